@@ -84,12 +84,12 @@ BudgetOf budget_of(const py::object& errors, const std::optional<std::filesystem
                      fmt::format("give {} to {}", kFewestPositions, kMostPositions));
   BudgetOf of;
   of.of = errors_of(errors, tolerances ? tolerances->string() : "", of.tolerances);
-  if (within_readings) require_measured_travel(of.of);
   TableFormatOptions options;
   options.tool = tool;
   const Tool& chosen = tool_of(of.of.machine, options);
   of.tool = chosen.name;
   of.conditions = stated_conditions(of.of, named_texts(conditions));
+  if (within_readings) require_within_readings(of.of, of.conditions);
   of.budget = without_lock([&] { return error_budget(of.of, chosen, of.conditions, grid); });
   of.of.covariance.resize(0, 0);
   of.of.residuals.clear();

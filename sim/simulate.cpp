@@ -145,11 +145,12 @@ class StudyReadout : public Readout {
     const std::uint64_t noise_seed = study_.noise_seed.value_or(study_.seed);
     const MeasuringConditions conditions{truth, study_.environment, tool_offsets_, noise_seed,
                                          false, noise_free,         &interference};
-    double time = 0.0;
+    double start = 0.0, end = 0.0;
     for (const SetupPlan& plan : plans_) {
-      campaign.setups.push_back(measure(plan, conditions, time));
-      time +=
-          plan.seconds_per_reading * static_cast<double>(plan.points.size()) + study_.pause_between_setups;
+      if (!plan.with_setup_before) start = end;
+      campaign.setups.push_back(measure(plan, conditions, start));
+      end = start + plan.seconds_per_reading * static_cast<double>(plan.points.size()) +
+            study_.pause_between_setups;
     }
     return campaign;
   }

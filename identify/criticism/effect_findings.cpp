@@ -24,12 +24,15 @@ namespace {
 
 constexpr std::size_t kListed = 40;
 
-/// Amplitudes and shape of a finding into its specification, the shape in words.
+/// Amplitudes and shape of a finding into its specification, the shape in words. An amplitude that no model
+/// file takes is left open.
 void state_values(const Family& family, const Eigen::VectorXd& shape, const Eigen::VectorXd& u,
                   EffectFinding& out) {
   const auto& amplitudes = family.effect->amplitudes();
   for (std::size_t k = 0; k < out.amplitudes.size(); ++k) {
-    out.spec.options.set(std::string(stem_of_key(amplitudes[k].key)), out.amplitudes[k].value);
+    const double value = out.amplitudes[k].value;
+    if (std::abs(value) <= largest_amplitude(*family.effect, amplitudes[k]))
+      out.spec.options.set(std::string(stem_of_key(amplitudes[k].key)), value);
   }
   const auto& shapes = family.effect->shapes();
   out.shape_text.clear();

@@ -55,10 +55,7 @@ ModelSpec refittable_model(const FitResult& result) {
   for (auto& [symbol, function] : model.functions) function.coefficients.clear();
   for (const FunctionSummary& summary : result.functions) {
     const auto function = model.functions.find(summary.symbol);
-    if (!summary.smoothed || function == model.functions.end()) continue;
-    function->second.knots = KnotChoice::Automatic;
-    function->second.automatic_degree = function->second.basis == "fourier";
-    function->second.breakpoints.clear();
+    if (summary.smoothed && function != model.functions.end()) function->second.smoothed = true;
   }
   return model;
 }

@@ -166,8 +166,20 @@ Screening screen_evaluated(const Campaign& campaign, const FitResult& evaluated,
   return is_worse && fitted_readings(campaign, fitted).are_all() ? *own : screening;
 }
 
+namespace {
+
+/// Beside errors that are not visible the search for noise may not end, and correlated readings look like a
+/// contradiction.
+bool is_without_noise(const FitOptions& options, const FitResult& result) {
+  return options.noise == NoisePolicy::Automatic && options.variance_components &&
+         !result.rank.invisible.empty() && !result.noise.estimated;
+}
+
+}  // namespace
+
 void screen_fit(const Campaign& campaign, const FitOptions& options, FitResult& result) {
   if (options.loss != RobustLoss::None || result.status == FitStatus::NotConverged) return;
+  if (is_without_noise(options, result)) return;
   constexpr double kShareBefore = 0.95;
   if (options.progress) options.progress("scans of the residuals", kShareBefore);
   const auto start = std::chrono::steady_clock::now();

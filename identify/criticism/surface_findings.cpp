@@ -13,7 +13,8 @@
 namespace volcal {
 namespace {
 
-constexpr double kFree = 0.1;  // of a function's square that is left when what is imitated is taken out
+constexpr double kFreeShare = 0.95;  // of what readings see of a function, imitated
+constexpr int kPowers = 3;
 constexpr Eigen::Index kPlacesOfCurve = 121, kPlacesOfSurface = 41;
 constexpr std::size_t kMostDots = 1500;
 
@@ -32,29 +33,34 @@ Eigen::VectorXd coefficients_of_power(const TensorBasis& basis, std::size_t vari
   return product;
 }
 
-bool is_imitated(const Eigen::VectorXd& coefficients, const Eigen::MatrixXd& imitated) {
-  const Eigen::VectorXd left = coefficients - imitated * imitated.colPivHouseholderQr().solve(coefficients);
-  return left.squaredNorm() < kFree * coefficients.squaredNorm();
+/// Powers 0, 1 and 2 of every variable: of the functions of one variable alone those that look least alike.
+Eigen::MatrixXd powers_of_variables(const TensorBasis& basis) {
+  const auto variables = static_cast<Eigen::Index>(basis.sides().size());
+  Eigen::MatrixXd powers(basis.size(), variables * kPowers);
+  for (Eigen::Index i = 0; i < variables; ++i) {
+    for (int power = 0; power < kPowers; ++power)
+      powers.col(i * kPowers + power) = coefficients_of_power(basis, static_cast<std::size_t>(i), power);
+  }
+  return powers;
 }
 
-/// What the readings do not tell from the rest of the model, in words.
-std::vector<std::string> free_parts(const TensorBasis& basis, const Eigen::MatrixXd& imitated,
-                                    const std::vector<Variable>& drivers, bool has_factor) {
-  if (imitated.cols() == 0 || has_factor) return {};
+/// What the readings do not tell from the rest of the model, in words. `imitated`: shares of the powers.
+std::vector<std::string> free_parts(const Eigen::VectorXd& imitated, const std::vector<Variable>& drivers) {
+  const auto is_free = [&](std::size_t variable, int power) {
+    return imitated[static_cast<Eigen::Index>(variable) * kPowers + power] > kFreeShare;
+  };
   std::vector<std::string> words;
   for (std::size_t i = 0; i < drivers.size(); ++i) {
-    if (is_imitated(coefficients_of_power(basis, i, 1), imitated) &&
-        is_imitated(coefficients_of_power(basis, i, 2), imitated)) {
+    if (is_free(i, 1) && is_free(i, 2)) {
       const bool is_position = drivers[i].kind == Variable::Kind::Position;
       words.push_back(fmt::format("any function of {} alone: the {} it", drivers[i].written(),
                                   is_position ? "error functions hold" : "rest of the model holds"));
-    } else if (is_imitated(coefficients_of_power(basis, i, 1), imitated)) {
+    } else if (is_free(i, 1)) {
       words.push_back(
           fmt::format("what is straight in {}: the rest of the model holds it", drivers[i].written()));
     }
   }
-  if (words.empty() && is_imitated(coefficients_of_power(basis, 0, 0), imitated))
-    words.emplace_back("a constant: the rest of the model holds it");
+  if (words.empty() && is_free(0, 0)) words.emplace_back("a constant: the rest of the model holds it");
   return words;
 }
 
@@ -85,8 +91,11 @@ class SurfaceSummary {
     out_.figure.covariance = covariance_of_coefficients();
     out_.effective_parameters =
         term.prior->rank - term.lambda * out_.figure.covariance.cwiseProduct(term.precision()).sum();
-    out_.free = free_parts(basis_, term.surface->imitated(), out_.drivers,
-                           surface_.spec.options.text("factor").has_value());
+    if (!surface_.spec.options.text("factor")) {
+      const Eigen::VectorXd imitated = state_.model().imitated_unless_smoothed(
+          projector_.gram(), surface_.term, powers_of_variables(basis_));
+      out_.free = free_parts(imitated, out_.drivers);
+    }
     draw();
     return std::move(out_);
   }

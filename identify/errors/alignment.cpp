@@ -3,13 +3,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
+#include "volcal/identify/errors/alignment_checks.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/model/description/errors.h"
-#include "volcal/model/description/parallel_axes.h"
 #include "volcal/model/description/units.h"
-#include "volcal/model/effects/reversal_label.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/kinematics/rotary_datum.h"
 #include "volcal/model/observation/measurement_model.h"
 #include "volcal/model/observation/restated_readings.h"
@@ -20,10 +21,8 @@ namespace {
 using Functional = Eigen::RowVectorXd;                        ///< of (parameters, 1)
 using VectorRows = Eigen::Matrix<double, 3, Eigen::Dynamic>;  ///< a vector as function of (parameters, 1)
 
-constexpr double kHolds = 1e-9;         // largest misfit of 1, or of a slope over the travel, in a basis
-constexpr double kSameOrigin = 1e-9;    // m
-constexpr double kLargestTilt = 10e-3;  // rad
-constexpr double kHeld = 1e-7;          // share of a displacement that locations and frames may leave
+constexpr double kHolds = 1e-9;  // largest misfit of 1, or of a slope over the travel, in a basis
+constexpr double kHeld = 1e-7;   // share of a displacement that locations and frames may leave
 constexpr int kAlignedPoses = 180;
 constexpr double kSameOffset = 1e-12;  // m
 
@@ -72,10 +71,10 @@ class Realignment {
   Realignment(const FitResult& result, const Alignment& alignment)
       : old_(result), to_(alignment), machine_(result.machine) {
     machine_.datum = alignment.datum;
-    for (const AxisName axis : kLinearAxes) {
+    direction_.fill(VectorRows::Zero(3, columns()));
+    for (const AxisName axis : linear_axes(machine_))
       if (alignment.origin) axis_of(axis).home = (*alignment.origin)[index_of(axis)];
-    }
-    for (const AxisName axis : kLinearAxes) direction_[index_of(axis)] = direction(axis);
+    for (const AxisName axis : linear_axes(machine_)) direction_[index_of(axis)] = direction(axis);
     phi_ = frame_rotation();
   }
 
@@ -178,6 +177,7 @@ class Realignment {
     return direction_[index_of(axis)] - crossed(phi_, axis_vector(axis));
   }
 
+  /// As Datum::squareness(); without a third axis the first alone is an error of the machine.
   std::array<Functional, 3> squareness_rows() const {
     const Datum& datum = machine_.datum;
     const Eigen::Vector3d e_p = axis_vector(datum.primary), e_s = axis_vector(datum.secondary),
@@ -229,7 +229,8 @@ class Realignment {
       layout.size += block.size();
       layout.blocks.push_back(std::move(block));
     };
-    for (const LocationSymbol symbol : machine_.datum.squareness()) append(location_block(symbol));
+    const std::vector<LocationSymbol> angles = squareness_errors(machine_);
+    for (const LocationSymbol symbol : angles) append(location_block(symbol));
     for (const ParameterBlock& block : old_.layout.blocks) {
       if (belongs_to_machine(block) && (!block.location || is_of_rotary_axis(block))) append(block);
     }
@@ -244,9 +245,8 @@ class Realignment {
         }
       }
     }
-    const std::array<Functional, 3> squareness = squareness_rows();
-    for (std::size_t i = 0; i < 3; ++i) rows.row(layout.blocks[i].offset) = squareness[i];
-    for (std::size_t i = 3; i < layout.blocks.size(); ++i) {
+    for (std::size_t i = 0; i < angles.size(); ++i) rows.row(layout.blocks[i].offset) = squareness_rows()[i];
+    for (std::size_t i = angles.size(); i < layout.blocks.size(); ++i) {
       const ParameterBlock& block = layout.blocks[i];
       rows.block(block.offset, old_.layout.find_block(block.name)->offset, block.size(), block.size())
           .setIdentity();
@@ -359,8 +359,8 @@ class Realignment {
       if (!error.visible) worst = error;
     }
     if (std::erase_if(errors, is_location) == 0) return;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const ParameterBlock& block = result.layout.blocks[i];
+    for (const LocationSymbol& symbol : squareness_errors(machine_)) {
+      const ParameterBlock& block = *result.layout.find_location(symbol);
       worst.symbol = block.name;
       worst.u_rms = std::sqrt(std::max(0.0, result.covariance(block.offset, block.offset)));
       worst.effective_parameters = 1.0;
@@ -376,62 +376,10 @@ class Realignment {
   std::optional<VectorRows> tool_turn_;  ///< that errors make up for; of a machine with rotary errors
 };
 
-void check_linear_axes(const Machine& machine) {
-  for (const AxisName axis : kLinearAxes) {
-    if (!machine.has_axis(axis))
-      throw InputError({}, std::string("the machine has no axis ") + letter_of(axis),
-                       "a coordinate system is aligned to X, Y and Z");
-  }
-}
-
-void check_origin(const Machine& machine, const AxisPosition& origin) {
-  for (const AxisName name : kLinearAxes) {
-    const Axis& axis = machine.axis(name);
-    const double q = origin[index_of(name)];
-    if (q < axis.travel_min - kSameOrigin || q > axis.travel_max + kSameOrigin)
-      throw InputError({}, std::string("the origin lies outside the travel of ") + letter_of(name),
-                       "give a point within the travel");
-  }
-}
-
-bool moves_origin(const Machine& machine, const Alignment& alignment) {
-  return alignment.origin && std::ranges::any_of(kLinearAxes, [&](AxisName axis) {
-           return std::abs((*alignment.origin)[index_of(axis)] - machine.axis(axis).home) > kSameOrigin;
-         });
-}
-
-void check_parameters(const FitResult& result, bool origin_moves) {
-  for (const ParameterBlock& block : result.layout.blocks) {
-    const bool refers_to_origin =
-        block.kind == ParameterKind::Expansion ||
-        ((block.kind == ParameterKind::Effect || block.kind == ParameterKind::EffectShape) &&
-         !reversal_symbol(block.name));
-    if (origin_moves && refers_to_origin)
-      throw InputError({}, block.name + " refers to the origin that the fit had",
-                       "change home_mm in the machine file and fit again, or leave the origin where it is");
-  }
-}
-
-void check_spindle(const FitResult& result, const Alignment& alignment) {
-  if (!alignment.spindle_tilt) return;
-  if (alignment.datum.primary != AxisName::Z)
-    throw InputError({}, "the spindle is parallel to Z (ISO 841), the primary axis is not",
-                     "make Z the primary axis");
-  if (alignment.spindle_tilt->cwiseAbs().maxCoeff() > kLargestTilt)
-    throw InputError({}, "the spindle leans by more than 10 mrad", "give its tilt in microradians");
-  for (const Component component : {Component::X, Component::Y}) {
-    const ErrorSymbol symbol{component, AxisName::Z};
-    if (alignment.spindle_tilt->norm() > 0.0 && !result.layout.find(symbol))
-      throw InputError(
-          {}, symbol.name() + " is switched off and cannot hold the slope of Z to the spindle",
-          "fit with " + symbol.name() + " in a B-spline or Legendre basis, or align to the axis");
-  }
-}
-
 std::string alignment_words(const FitResult& result) {
   std::string text = "primary " + std::string(1, letter_of(result.machine.datum.primary)) + ", secondary " +
                      letter_of(result.machine.datum.secondary) + ", origin";
-  for (const AxisName axis : kLinearAxes) {
+  for (const AxisName axis : linear_axes(result.machine)) {
     std::string value = std::to_string(result.machine.axis(axis).home * kPerMilli);
     value.erase(value.find_last_not_of('0') + 1);
     if (value.back() == '.') value.pop_back();
@@ -461,15 +409,7 @@ Datum wished_datum(const Datum& former, std::optional<AxisName> primary, std::op
 }
 
 AlignedResult align_result(const FitResult& result, const Alignment& alignment) {
-  require_no_parallel_axes(
-      result.machine, "the alignment of a result",
-      "choose [datum] in the machine file and fit again, home_mm of every axis as the origin");
-  if (alignment.datum.primary == alignment.datum.secondary)
-    throw InputError({}, "primary and secondary axis are the same", "name two different axes");
-  check_linear_axes(result.machine);
-  if (alignment.origin) check_origin(result.machine, *alignment.origin);
-  check_parameters(result, moves_origin(result.machine, alignment));
-  check_spindle(result, alignment);
+  check_alignment(result, alignment);
   AlignedResult aligned = Realignment(result, alignment).aligned();
   aligned.result.alignment =
       alignment_words(aligned.result) + (alignment.spindle_tilt ? ", along the spindle" : "");

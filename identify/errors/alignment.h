@@ -48,7 +48,7 @@ struct AlignedResult {
 /// Throws InputError with a remedy: a machine without X, Y and Z, location errors of rotary axes that the
 /// model lacks and the new frame needs, primary = secondary, an origin outside the travel, a spindle with
 /// another primary axis than Z, a function whose basis cannot hold the constant or the slope, or effects that
-/// refer to the former origin.
+/// refer to the former origin: they count positions from home. Surfaces, expressions and reversals do not.
 AlignedResult align_result(const FitResult& result, const Alignment& alignment);
 
 /// Readings of a campaign of the machine as it was identified, in the coordinate system of an aligned result:

@@ -228,7 +228,51 @@ PoseErrorRows ErrorField::rows(const AxisPosition& position, const ApproachDirec
 
 PoseErrorRows ErrorField::unheld_rows(const AxisPosition& position,
                                       const ApproachDirection& direction) const {
-  return rows_at(position, position, direction);
+  PoseErrorRows rows = rows_at(position, position, direction);
+  if (const std::optional<PoseErrorRows> faded = faded_rows(position, direction)) rows += *faded;
+  return rows;
+}
+
+std::optional<PoseErrorRows> ErrorField::faded_rows(const AxisPosition& position,
+                                                    const ApproachDirection& direction) const {
+  const AxisPosition held = measured_.held(position);
+  const Eigen::MatrixXd lost = effects_.faded_drivers({&held, 1}, {&direction, 1});
+  if (lost.size() == 0) return std::nullopt;
+  Eigen::RowVectorXd drivers = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(effects_.columns().size()));
+  drivers.head(lost.cols()) = lost.row(0);
+  JointLever levers[kAxisCount];
+  chain_.levers(position, tool_.offset, levers);
+  PoseErrorRows of_conditions =
+      PoseErrorRows::Zero(6, static_cast<Eigen::Index>(condition_parameters_.size()));
+  add_effect_rows(levers, position, drivers, of_conditions);
+  PoseErrorRows rows = PoseErrorRows::Zero(6, layout_.size);
+  for (std::size_t i = 0; i < condition_parameters_.size(); ++i)
+    rows.col(condition_parameters_[i]) = of_conditions.col(static_cast<Eigen::Index>(i));
+  return rows;
+}
+
+PoseErrorVector ErrorField::faded_variance(const AxisPosition& position,
+                                           const ApproachDirection& direction) const {
+  PoseErrorVector variance = PoseErrorVector::Zero();
+  const std::vector<FadedSurface> faded = effects_.faded_surfaces(measured_.held(position), direction);
+  if (faded.empty()) return variance;
+  JointLever levers[kAxisCount];
+  chain_.levers(position, tool_.offset, levers);
+  for (const FadedSurface& each : faded) {
+    PoseErrorVector error = PoseErrorVector::Zero();
+    if (each.target.kind == TargetKind::ToolOffset)
+      error.head<3>() = each.u * chain_.nominal_rotation_wt(position).col(each.target.component);
+    if (each.target.kind == TargetKind::Motion)
+      error = each.u * motion_column(joint_lever(levers, chain_.joint_count(), each.target.symbol.axis),
+                                     each.target.symbol.component);
+    variance += error.cwiseAbs2();
+  }
+  return variance;
+}
+
+bool ErrorField::is_beyond_readings(const AxisPosition& position, const ApproachDirection& direction) const {
+  if (measured_.is_beyond(position)) return true;
+  return effects_.faded_drivers({&position, 1}, {&direction, 1}).size() > 0;
 }
 
 PoseErrorRows ErrorField::rows_at(const AxisPosition& position, const AxisPosition& functions_at,

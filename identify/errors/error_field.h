@@ -5,7 +5,8 @@
 /// compensations, plans, Monte Carlo and reports say of the volume follows from it.
 ///
 /// Beyond the positions that were measured an error function, and what an effect makes of a position, keep
-/// their last measured value.
+/// their last measured value. A curve or surface without a name fades out beyond the values of its variables,
+/// temperatures and times among them, that it was drawn from.
 ///
 ///   const ErrorField field(result, tool, conditions);
 ///   field.at(position, direction);           // ex ey ez (m), ea eb ec (rad), workpiece coordinates
@@ -68,9 +69,18 @@ class ErrorField {
                                   const ApproachDirection& direction = {}) const;
   /// Derivatives to the parameters; errors are linear in all of them but those of an effect's shape.
   PoseErrorRows rows(const AxisPosition& position, const ApproachDirection& direction = {}) const;
-  /// The same with the error functions as they are beyond the measured positions: what the uncertainty of a
-  /// value that is held there follows from.
+  /// The same with error functions as they are beyond the measured positions and with curves and surfaces
+  /// that have not faded out: what the uncertainty of a value there follows from.
   PoseErrorRows unheld_rows(const AxisPosition& position, const ApproachDirection& direction = {}) const;
+  /// What curves and surfaces have lost that fade out beyond the readings they were drawn from: derivatives
+  /// of the error with their last value held, less rows(). Absent where none is beyond.
+  std::optional<PoseErrorRows> faded_rows(const AxisPosition& position,
+                                          const ApproachDirection& direction = {}) const;
+  /// Variances that what has faded out may still have.
+  PoseErrorVector faded_variance(const AxisPosition& position, const ApproachDirection& direction = {}) const;
+  /// Beyond the measured positions of an axis, or the readings of a curve or surface, at that pose and the
+  /// stated conditions.
+  bool is_beyond_readings(const AxisPosition& position, const ApproachDirection& direction = {}) const;
   /// Of one contribution at a pose.
   PoseErrorVector contribution(const Contribution& part, const AxisPosition& position,
                                const ApproachDirection& direction = {}) const;

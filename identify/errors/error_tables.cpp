@@ -121,11 +121,42 @@ class TableRows {
            (is_expanding(symbol) && excess_[index_of(symbol.axis)] != 0.0);
   }
 
-  bool is_extrapolated(ErrorSymbol symbol, double q) const {
+  /// Beyond the measured positions, or the readings of a curve of this symbol.
+  bool is_extrapolated(ErrorSymbol symbol, double q, int direction) const {
     AxisPosition position{};
     position.fill(std::numeric_limits<double>::quiet_NaN());
     position[index_of(symbol.axis)] = q;
-    return measured_.is_beyond(position);
+    return measured_.is_beyond(position) || !faded(symbol, q, direction).isZero(0.0);
+  }
+
+  /// Standard uncertainty of what curves of a symbol may still be beyond their readings.
+  double u_of_faded(ErrorSymbol symbol, double q, int direction) const {
+    AxisPosition position{};
+    position[index_of(symbol.axis)] = q;
+    double squares = 0.0;
+    for (const FadedSurface& each :
+         effects_.faded_surfaces(measured_.held(position), along(symbol.axis, direction))) {
+      const bool is_own = each.target.kind == TargetKind::Motion && each.target.symbol == symbol &&
+                          is_of_own_axis(effects_, each.effect);
+      if (is_own) squares += each.u * each.u;
+    }
+    return std::sqrt(squares);
+  }
+
+  /// Derivatives to the parameters of what curves of a symbol have lost beyond their readings.
+  Eigen::VectorXd faded(ErrorSymbol symbol, double q, int direction) const {
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(result_.layout.size);
+    AxisPosition position{};
+    position[index_of(symbol.axis)] = q;
+    const AxisPosition held = measured_.held(position);
+    const ApproachDirection approach = along(symbol.axis, direction);
+    const Eigen::MatrixXd lost = effects_.faded_drivers({&held, 1}, {&approach, 1});
+    if (lost.size() == 0) return row;
+    for (const std::size_t c : own_) {
+      const EffectColumn& column = effects_.columns()[c];
+      if (column.target.symbol == symbol) row[column.parameter] += lost(0, static_cast<Eigen::Index>(c));
+    }
+    return row;
   }
 
   /// Derivatives of a value to the parameters. Beyond the readings those of the function there, of which the
@@ -150,6 +181,11 @@ class TableRows {
 
  private:
   static bool is_expanding(ErrorSymbol symbol) { return symbol.is_positioning(); }
+  static ApproachDirection along(AxisName axis, int direction) {
+    ApproachDirection approach{};
+    approach[index_of(axis)] = static_cast<std::int8_t>(direction);
+    return approach;
+  }
   bool has_share(ErrorSymbol symbol) const { return !compromise_.empty() && !is_rotary(symbol.axis); }
   bool coupled_direction(AxisName axis) const {
     for (std::size_t e = 0; e < effects_.effect_count(); ++e) {
@@ -196,8 +232,7 @@ class TableRows {
 
   void add_own_effects(ErrorSymbol symbol, const AxisPosition& held, int direction,
                        Eigen::VectorXd& row) const {
-    ApproachDirection approach{};
-    approach[index_of(symbol.axis)] = static_cast<std::int8_t>(direction);
+    const ApproachDirection approach = along(symbol.axis, direction);
     const Eigen::MatrixXd drivers = effects_.drivers_and_slopes({&held, 1}, {&approach, 1});
     for (std::size_t c = 0; c < effects_.columns().size(); ++c) {
       const EffectColumn& column = effects_.columns()[c];
@@ -221,7 +256,8 @@ class TableRows {
   std::array<double, kAxisCount> excess_{};  ///< temperature of the scale less 20 degC, K
 };
 
-/// Calls visit(row without its uncertainty, derivatives to the parameters) for every row of the table.
+/// Calls visit(row without its uncertainty, derivatives to the parameters, u of what has faded out) for every
+/// row of the table.
 template <class Visit>
 void for_each_table_row(const FitResult& result, const ErrorTableOptions& options, const Visit& visit) {
   const TableRows rows(result, options);
@@ -238,10 +274,15 @@ void for_each_table_row(const FitResult& result, const ErrorTableOptions& option
           place.position = q;
           place.direction = direction;
           place.rotation = is_rotation(component);
-          place.extrapolated = rows.is_extrapolated(symbol, q);
+          place.extrapolated = rows.is_extrapolated(symbol, q, direction);
           const Eigen::VectorXd held = rows.derivatives(symbol, q, direction, true);
           place.value = held.dot(result.parameters) + rows.constant(symbol, q, held);
-          visit(place, place.extrapolated ? rows.derivatives(symbol, q, direction, false) : held);
+          if (!place.extrapolated) {
+            visit(place, held, 0.0);
+            continue;
+          }
+          visit(place, rows.derivatives(symbol, q, direction, false) + rows.faded(symbol, q, direction),
+                rows.u_of_faded(symbol, q, direction));
         }
       }
     }
@@ -252,33 +293,38 @@ void for_each_table_row(const FitResult& result, const ErrorTableOptions& option
     place.symbol = block.name;
     place.rotation = is_rotation(block.location->component);
     place.value = result.parameters[block.offset];
-    visit(place, Eigen::VectorXd(Eigen::VectorXd::Unit(result.layout.size, block.offset)));
+    visit(place, Eigen::VectorXd(Eigen::VectorXd::Unit(result.layout.size, block.offset)), 0.0);
   }
 }
 
-/// Variances of a pose where error functions are not held beyond the readings.
-PoseErrorVector unheld_variance(const FitResult& result, const AxisPosition& position, const Tool& tool) {
-  const KinematicChain chain(result.machine);
-  const PoseErrorRows rows = pose_error_rows(chain, result.layout, position, tool.offset, position);
-  return (rows * result.covariance).cwiseProduct(rows).rowwise().sum();
+PoseErrorVector variance_of(const PoseErrorRows& rows, const Eigen::MatrixXd& covariance) {
+  return (rows * covariance).cwiseProduct(rows).rowwise().sum();
+}
+
+PoseErrorVector variance_beyond_readings(const FitResult& result, const ErrorField& field,
+                                         const AxisPosition& position, const ApproachDirection& direction) {
+  return variance_of(field.unheld_rows(position, direction), result.covariance) +
+         field.faded_variance(position, direction);
 }
 
 }  // namespace
 
 std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options) {
   std::vector<ErrorTableRow> table;
-  for_each_table_row(result, options, [&](ErrorTableRow row, const Eigen::VectorXd& derivatives) {
-    row.u = std::sqrt(std::max(0.0, derivatives.dot(result.covariance * derivatives)));
-    row.U95 = result.coverage_factor * row.u;
-    table.push_back(row);
-  });
+  for_each_table_row(result, options,
+                     [&](ErrorTableRow row, const Eigen::VectorXd& derivatives, double u_of_faded) {
+                       row.u = std::sqrt(std::max(0.0, derivatives.dot(result.covariance * derivatives)) +
+                                         u_of_faded * u_of_faded);
+                       row.U95 = result.coverage_factor * row.u;
+                       table.push_back(row);
+                     });
   return table;
 }
 
 Eigen::MatrixXd error_table_derivatives(const FitResult& result, const ErrorTableOptions& options) {
   std::vector<Eigen::VectorXd> rows;
   for_each_table_row(result, options,
-                     [&](const ErrorTableRow&, const Eigen::VectorXd& row) { rows.push_back(row); });
+                     [&](const ErrorTableRow&, const Eigen::VectorXd& row, double) { rows.push_back(row); });
   Eigen::MatrixXd derivatives(static_cast<Eigen::Index>(rows.size()), result.layout.size);
   for (std::size_t i = 0; i < rows.size(); ++i)
     derivatives.row(static_cast<Eigen::Index>(i)) = rows[i].transpose();
@@ -293,9 +339,10 @@ VolumetricError volumetric_error(const FitResult& result, const ErrorField& fiel
   error.tool = tool.name;
   const PoseErrorRows rows = field.rows(position, direction);
   error.value = field.at(position, direction);
-  error.extrapolated = field.measured().is_beyond(position);
-  PoseErrorVector variance = (rows * result.covariance).cwiseProduct(rows).rowwise().sum();
-  if (error.extrapolated) variance = variance.cwiseMax(unheld_variance(result, position, tool));
+  error.extrapolated = field.is_beyond_readings(position, direction);
+  PoseErrorVector variance = variance_of(rows, result.covariance);
+  if (error.extrapolated)
+    variance = variance_beyond_readings(result, field, position, direction).cwiseMax(variance);
   variance.head<3>().array() += field.stated_tool_variance();
   error.u = variance.cwiseMax(0.0).cwiseSqrt();
   return error;
@@ -319,8 +366,8 @@ void for_each_plane_of_tool(const FitResult& result, const Tool& tool, const Axi
                             const Conditions& conditions,
                             const std::function<void(std::span<const VolumetricError>)>& use) {
   const ErrorGrid errors(result, tool, axes, conditions);
-  const MeasuredTravel measured(result);
-  const double of_tool = ErrorField(result, tool, conditions).stated_tool_variance();
+  const ErrorField field(result, tool, conditions);
+  const double of_tool = field.stated_tool_variance();
   AxisGrid plane = axes;
   std::vector<VolumetricError> nodes;
   errors.for_each_plane([&](std::size_t first, std::span<const NodeError> of_plane) {
@@ -332,9 +379,10 @@ void for_each_plane_of_tool(const FitResult& result, const Tool& tool, const Axi
       error.position = positions[i];
       error.tool = tool.name;
       error.value = of_plane[i].value;
-      error.extrapolated = measured.is_beyond(positions[i]);
+      error.extrapolated = field.is_beyond_readings(positions[i]);
       PoseErrorVector variance = of_plane[i].variance;
-      if (error.extrapolated) variance = variance.cwiseMax(unheld_variance(result, positions[i], tool));
+      if (error.extrapolated)
+        variance = variance_beyond_readings(result, field, positions[i], {}).cwiseMax(variance);
       variance.head<3>().array() += of_tool;
       error.u = variance.cwiseMax(0.0).cwiseSqrt();
     }

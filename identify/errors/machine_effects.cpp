@@ -9,6 +9,7 @@
 
 #include "volcal/model/description/variable.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/functions/tensor_basis.h"
 #include "volcal/model/kinematics/rotary_datum.h"
 
 namespace volcal {
@@ -137,6 +138,8 @@ struct MachineEffects::Shared {
     EffectReach reach;
     std::array<bool, kAxisCount> uneven{};
     bool polynomial = false;
+    Eigen::VectorXd coefficients = {};  ///< of a curve or surface, m or rad
+    double rms = 0.0;                   ///< of a curve or surface over its range, m or rad
   };
 
   Shared(const FitResult& result, const Tool& of_tool, const Conditions& at)
@@ -182,6 +185,7 @@ class ReachProbe {
   }
 
   EffectReach reach_of(const Effect& effect) {
+    if (effect.surface() != nullptr) return reach_of_surface(effect);
     EffectReach reach;
     const Eigen::MatrixXd here = at(effect, conditions_, positions_, directions_);
     reach.acts = !here.isZero(0.0);
@@ -224,6 +228,26 @@ class ReachProbe {
   }
 
  private:
+  /// All that it is drawn over: at the stated conditions it may have faded out.
+  EffectReach reach_of_surface(const Effect& effect) {
+    EffectReach reach;
+    PoseReadings readings(machine_, tool_, conditions_, clock_start_);
+    const SetupView& view = readings.at(positions_, directions_);
+    const Eigen::MatrixXd faded = effect.faded_drivers(view);
+    reach.acts = !effect.drivers(view, effect.shape_values()).isZero(0.0) || !faded.isZero(0.0);
+    if (!reach.acts) return reach;
+    for (const Variable& variable : variables_in(effect.name().driver)) {
+      if (variable.kind == Variable::Kind::Position) reach.position[index_of(variable.axis)] = true;
+      if (variable.kind == Variable::Kind::Direction) reach.direction[index_of(variable.axis)] = true;
+      if (variable.kind == Variable::Kind::Time) reach.time = true;
+      if (variable.kind == Variable::Kind::Feed) reach.feed = true;
+      for (const auto& [channel, value] : conditions_.temperature_degC) {
+        if (variable.written() == temperature_of(channel).written()) reach.temperature.insert(channel);
+      }
+    }
+    return reach;
+  }
+
   Eigen::MatrixXd at(const Effect& effect, const Conditions& conditions,
                      std::span<const AxisPosition> positions, std::span<const ApproachDirection> directions) {
     PoseReadings readings(machine_, tool_, conditions, clock_start_);
@@ -295,6 +319,13 @@ MachineEffects::MachineEffects(const FitResult& result, const Tool& tool, const 
       }
       one.polynomial = kind->schema().polynomial;
       one.uneven = probe->uneven_directions(*one.effect, one.reach);
+      if (const TensorBasis* surface = one.effect->surface()) {
+        one.coefficients.resize(surface->size());
+        for (int k = 0; k < surface->size(); ++k)
+          one.coefficients[k] = result.parameters[parameter_of(
+              result, one.effect->amplitudes()[static_cast<std::size_t>(k)].label)];
+        one.rms = surface->root_mean_square(one.coefficients);
+      }
       shared->effects.push_back(std::move(one));
     }
   }
@@ -325,6 +356,9 @@ MachineEffects::MachineEffects(const FitResult& result, const Tool& tool, const 
 const std::string& MachineEffects::label(std::size_t effect) const { return shared_->effects[effect].label; }
 const EffectReach& MachineEffects::reach(std::size_t effect) const { return shared_->effects[effect].reach; }
 std::size_t MachineEffects::effect_count() const { return shared_->effects.size(); }
+bool MachineEffects::is_surface(std::size_t effect) const {
+  return shared_->effects[effect].effect->surface() != nullptr;
+}
 bool MachineEffects::is_polynomial(std::size_t effect) const { return shared_->effects[effect].polynomial; }
 
 MachineEffects MachineEffects::subset(std::span<const std::size_t> effects) const {
@@ -394,6 +428,40 @@ Eigen::MatrixXd MachineEffects::evaluate(std::span<const AxisPosition> positions
 Eigen::MatrixXd MachineEffects::drivers(std::span<const AxisPosition> positions,
                                         std::span<const ApproachDirection> directions) const {
   return evaluate(positions, directions, false);
+}
+
+Eigen::MatrixXd MachineEffects::faded_drivers(std::span<const AxisPosition> positions,
+                                              std::span<const ApproachDirection> directions) const {
+  Eigen::MatrixXd all;
+  if (std::ranges::none_of(used_, [this](std::size_t e) { return is_surface(e); })) return all;
+  const SetupView& view = shared_->readings().at(positions, directions);
+  for (const std::size_t e : used_) {
+    const Eigen::MatrixXd lost = shared_->effects[e].effect->faded_drivers(view);
+    if (lost.size() == 0) continue;
+    if (all.size() == 0)
+      all = Eigen::MatrixXd::Zero(lost.rows(), static_cast<Eigen::Index>(amplitude_count_));
+    for (std::size_t c = 0; c < amplitude_count_; ++c) {
+      if (columns_[c].effect == e) all.col(static_cast<Eigen::Index>(c)) = lost.col(columns_[c].amplitude);
+    }
+  }
+  return all;
+}
+
+std::vector<FadedSurface> MachineEffects::faded_surfaces(const AxisPosition& position,
+                                                         const ApproachDirection& direction) const {
+  std::vector<FadedSurface> faded;
+  const SetupView* view = nullptr;
+  for (const std::size_t e : used_) {
+    const Shared::One& one = shared_->effects[e];
+    if (one.effect->surface() == nullptr) continue;
+    if (view == nullptr) view = &shared_->readings().at({&position, 1}, {&direction, 1});
+    const Eigen::MatrixXd lost = one.effect->faded_drivers(*view);
+    if (lost.size() == 0) continue;
+    const double share = lost.sum();  // splines add up to 1
+    faded.push_back({e, one.effect->amplitudes().front().target,
+                     std::max(std::abs(lost.row(0).dot(one.coefficients)), std::abs(share) * one.rms)});
+  }
+  return faded;
 }
 
 Eigen::MatrixXd MachineEffects::drivers_and_slopes(std::span<const AxisPosition> positions,

@@ -24,7 +24,8 @@
 
 namespace volcal {
 
-/// What the driver of an effect varies with, found by varying one at a time over the travel.
+/// What the driver of an effect varies with, found by varying one at a time over the travel; of a curve or
+/// surface all that it is drawn over.
 struct EffectReach {
   bool acts = false;  ///< not 0 at every pose and condition
   std::array<bool, kAxisCount> position{};
@@ -48,6 +49,13 @@ struct EffectColumn {
   int amplitude_parameter = 0;  ///< the same for an amplitude
 };
 
+/// What a curve or surface that has faded out may still be.
+struct FadedSurface {
+  std::size_t effect = 0;
+  EffectTarget target;
+  double u = 0.0;  ///< of the target, m or rad
+};
+
 class MachineEffects {
  public:
   /// Copies what it needs of `result`.
@@ -62,12 +70,22 @@ class MachineEffects {
   std::size_t effect_count() const;
   /// Numbers of the effects that are asked for here: of a subset() those of the subset.
   std::span<const std::size_t> numbers() const { return used_; }
+  /// A curve or surface without a name, which fades out beyond its readings.
+  bool is_surface(std::size_t effect) const;
   /// EffectSchema::polynomial of its kind.
   bool is_polynomial(std::size_t effect) const;
 
   /// Drivers, poses x amplitudes; `direction` holds one entry for all poses or one each.
   Eigen::MatrixXd drivers(std::span<const AxisPosition> positions,
                           std::span<const ApproachDirection> directions) const;
+  /// What curves and surfaces have lost where they fade out beyond their readings, poses x amplitudes:
+  /// drivers with the last value held, less drivers(). Empty where no pose is beyond.
+  Eigen::MatrixXd faded_drivers(std::span<const AxisPosition> positions,
+                                std::span<const ApproachDirection> directions) const;
+  /// Standard uncertainties that come of it at one pose: by the curve's or surface's last value, or by its
+  /// root mean square where that is more.
+  std::vector<FadedSurface> faded_surfaces(const AxisPosition& position,
+                                           const ApproachDirection& direction) const;
   /// Drivers and slopes of the drivers to the parameters of the shape: poses x columns.
   Eigen::MatrixXd drivers_and_slopes(std::span<const AxisPosition> positions,
                                      std::span<const ApproachDirection> directions) const;

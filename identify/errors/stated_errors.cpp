@@ -115,8 +115,10 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model) {
     for (const std::string& channel : channels_of(effect))
       result.conditions.temperature_degC[channel] = kReference;
   }
-  result.conditions.time = RecordedRange{};
-  result.conditions.feed = RecordedRange{};
+  result.conditions.time = model.conditions.time.value_or(RecordedRange{});
+  result.conditions.feed = model.conditions.feed.value_or(RecordedRange{});
+  for (const auto& [channel, range] : model.conditions.temperature_degC)
+    result.conditions.temperature_degC[channel] = range;
   return result;
 }
 

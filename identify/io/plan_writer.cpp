@@ -277,6 +277,10 @@ std::string plan_json(const CampaignPlan& plan) {
                                {"makes_visible", option.made_visible},
                                {"still_not_visible", option.still_invisible}});
   }
+  if (!plan.findings.empty()) {
+    json["messages"] = sentences(plan.findings);
+    json["findings"] = findings_json(plan.findings);
+  }
   add_notes(plan.notes, json);
   return json_text(json, 2) + "\n";
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/result/surface_values.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -61,7 +62,7 @@ void add_tables(const FitResult& result, QuantityList& list) {
 
 void add_parameters(const FitResult& result, QuantityList& list) {
   for (const ParameterBlock& block : result.layout.blocks) {
-    if (block.location) continue;
+    if (block.location || is_surface(block)) continue;
     for (int k = 0; k < block.size(); ++k) {
       const auto index = static_cast<std::size_t>(k);
       if (!(result.covariance(block.offset + k, block.offset + k) > 0.0)) continue;
@@ -75,6 +76,24 @@ void add_parameters(const FitResult& result, QuantityList& list) {
                 .estimate = result.parameters[block.offset + k]},
                Eigen::VectorXd::Unit(result.layout.size, block.offset + k));
     }
+  }
+}
+
+/// Their largest values; a coefficient alone means nothing.
+void add_surfaces(const FitResult& result, QuantityList& list) {
+  for (const SurfaceValues& surface : surface_values(result)) {
+    if (!(surface.largest_u > 0.0)) continue;
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(result.layout.size);
+    row.segment(surface.offset, surface.largest_row.size()) = surface.largest_row;
+    list.add({.kind = QuantityKind::Parameter,
+              .name = surface.label + " at " + surface.place_words(),
+              .axis = {},
+              .tool = {},
+              .at = {},
+              .unit = surface.unit,
+              .si_per_unit = surface.si_per_unit,
+              .estimate = surface.largest},
+             row);
   }
 }
 
@@ -193,6 +212,7 @@ QuantitySet quantities_of(const FitResult& result, int grid_per_axis) {
   QuantityList list(result.layout.size);
   add_tables(result, list);
   add_parameters(result, list);
+  add_surfaces(result, list);
   QuantitySet set;
   for (const Tool& tool : result.machine.tools) {
     if (grid_per_axis <= 0) break;

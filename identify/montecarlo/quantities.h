@@ -1,7 +1,8 @@
 #pragma once
 /// What a Monte Carlo study gives distributions of: every value of the error tables, every other parameter
-/// (effects, tool offsets, expansions, stations, dead paths), volumetric errors on a grid over the travel for
-/// every tool, and of each tool their root mean square and their largest, which are not linear.
+/// (effects, tool offsets, expansions, stations, dead paths), the largest value of every surface, volumetric
+/// errors on a grid over the travel for every tool, and of each tool their root mean square and their
+/// largest, which are not linear.
 
 #include <Eigen/Core>
 #include <optional>
@@ -18,7 +19,7 @@ std::string_view to_string(QuantityKind kind);
 
 struct Quantity {
   QuantityKind kind = QuantityKind::TableValue;
-  std::string name;                ///< "EXX", "EC0Y", "station P1 x", "ex", "rms", "max"
+  std::string name;                ///< "EXX", "station P1 x", "curve EYX by x at x = 310", "ex", "max"
   std::optional<AxisName> axis;    ///< of a table value with a position
   double position = 0.0;           ///< m or rad
   int direction = 0;               ///< as in the tables

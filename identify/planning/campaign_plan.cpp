@@ -116,9 +116,13 @@ void keep_the_surer(const PlanLayout& textbook, CampaignPlan& plan) {
   plan.searched = std::move(kept);
 }
 
-CampaignPlan plan_campaign(const PlanSettings& settings, const Campaign* given) {
-  check_plan_settings(settings);
+CampaignPlan plan_campaign(const PlanSettings& given_settings, const Campaign* given) {
+  check_plan_settings(given_settings);
   CampaignPlan plan;
+  PlanSettings settings = given_settings;
+  const Campaign textbook_campaign = campaign_of(textbook_layout(settings, LineOfSight(settings)), settings);
+  if (auto held = hold_effects_unseen(textbook_campaign, settings.model))
+    plan.findings.push_back(*std::move(held));
   plan.settings = settings;
   PlanSettings searching = with_share(settings, 0.0, 0.8);
   // What verifies is best where the first campaign knows least.

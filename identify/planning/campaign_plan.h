@@ -59,6 +59,7 @@ struct CampaignPlan {
   std::optional<ExpectedCampaign> given;  ///< the user's plan, or what there is before it is extended
   std::optional<ReplacedPlan> replaced;   ///< the plan is the textbook's
   std::vector<PlanOption> options;        ///< best first; when an error is not visible, or when extending
+  std::vector<Finding> findings;          ///< what the plan takes as known
   std::vector<Finding> notes;             ///< on the files of the given campaign (Campaign::notes)
 };
 

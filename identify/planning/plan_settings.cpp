@@ -1,13 +1,71 @@
 #include "volcal/identify/planning/plan_settings.h"
 
+#include <algorithm>
+#include <memory>
 #include <numeric>
+#include <set>
 
 #include "volcal/identify/planning/registry.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/parallel_axes.h"
 #include "volcal/model/description/unknowns.h"
+#include "volcal/model/description/variable.h"
+#include "volcal/model/effects/effect.h"
+#include "volcal/model/effects/registry.h"
 
 namespace volcal {
+namespace {
+
+/// Columns of what it depends on that changes at a pose: temperatures, feed.
+std::set<std::string> columns_of_conditions(const EffectSpec& spec, const Effect& effect) {
+  std::set<std::string> columns;
+  if (const auto channel = spec.options.text("temperature"))
+    columns.insert(temperature_of(*channel).column());
+  for (const std::string& word : words_in(effect.name().driver)) {
+    const auto variable = Variable::parse_written(word);
+    if (variable && variable->changes_at_rest()) columns.insert(variable->column());
+  }
+  return columns;
+}
+
+/// Rather than to the machine.
+bool belongs_to_campaign(const EffectSpec& spec, const Effect& effect) {
+  const auto is_named = [&spec](const char* key) { return spec.options.text(key).has_value(); };
+  if (is_named("setup") || is_named("station") || is_named("only")) return true;
+  return std::ranges::none_of(effect.amplitudes(), [](const EffectAmplitude& amplitude) {
+    return amplitude.target.kind == TargetKind::Motion || amplitude.target.kind == TargetKind::ToolOffset;
+  });
+}
+
+bool can_act(const Campaign& campaign, const Effect& effect) {
+  try {
+    effect.check(campaign, {});
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::optional<Finding> hold_effects_unseen(const Campaign& planned, ModelSpec& model) {
+  std::vector<std::string> labels;
+  std::set<std::string> columns;
+  std::erase_if(model.effects, [&](const EffectSpec& spec) {
+    const std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, model.file);
+    if (can_act(planned, *effect)) return false;
+    const std::set<std::string> own = columns_of_conditions(spec, *effect);
+    if (own.empty() && !belongs_to_campaign(spec, *effect)) return false;
+    labels.push_back(effect_label(*effect));
+    columns.insert(own.begin(), own.end());
+    return true;
+  });
+  if (labels.empty()) return std::nullopt;
+  Finding finding{FindingCode::PlanEffectsKnown, {{"effects", labels}}};
+  if (!columns.empty()) finding.data["columns"] = std::vector<std::string>(columns.begin(), columns.end());
+  return finding;
+}
 
 std::vector<std::size_t> tools_of(const PlanSettings& settings) {
   if (!settings.budget.tools.empty()) return settings.budget.tools;
@@ -40,12 +98,14 @@ void check_plan_settings(const PlanSettings& settings) {
   if (settings.machine.tools.empty()) {
     fail("the machine has no tool", "add a [tools.NAME] table to its file: where the reflector is held");
   }
-  for (const AxisName axis : kLinearAxes) {
-    if (!settings.machine.has_axis(axis)) {
-      fail(std::string("the machine has no axis ") + letter_of(axis),
-           "stations are planned for machines with X, Y and Z");
-    }
-  }
+  const std::vector<AxisName> linear = linear_axes(settings.machine);
+  if (linear.size() < 2)
+    fail("the machine has fewer than two linear axes", "plan for machines with two of X, Y and Z or more");
+  if (linear.size() == 2 && plan_instrument_of(settings).turns_rotary_axes())
+    fail(std::string("a ") + settings.instrument + " is planned where X, Y and Z follow the rotary axes: " +
+             letter_of(linear[0]) + " and " + letter_of(linear[1]) + " alone lead to points of one plane",
+         "plan the linear axes with another --instrument, and test each rotary axis alone: kind = "
+         "\"angle-lines\" and \"axis-of-rotation\" of volcal simulate have the positions");
   if (!settings.budget.readings && !settings.budget.time) {
     fail("neither readings nor time are limited", "give --readings N, --time HOURS or both");
   }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/finding.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/description/model_spec.h"
 
@@ -107,6 +108,11 @@ struct PlanSettings {
 
 /// A model without the errors of linear axes and their squareness.
 ModelSpec with_known_linear_axes(ModelSpec model, const Machine& machine);
+
+/// Takes effects out of the model that a campaign like `planned` cannot show: they depend on temperatures or
+/// a feed that it does not record, or belong to setups or stations of the campaign in which they were found.
+/// The plan takes them as known. Says which, "plan.effects-known"; nothing where there are none.
+std::optional<Finding> hold_effects_unseen(const Campaign& planned, ModelSpec& model);
 
 /// Throws InputError for settings that make no plan.
 void check_plan_settings(const PlanSettings& settings);

@@ -1,13 +1,18 @@
 #include "volcal/identify/planning/swept_volume.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "volcal/model/description/unknowns.h"
 
 namespace volcal {
 namespace {
 
 constexpr double kProgrammedSteps = 1e6;  // per metre
+constexpr double kAtPoint = 1e-6;         // m
 
 /// Opposite to the tools, along a coordinate direction.
 Eigen::Vector3d spindle_direction(const Machine& machine) {
@@ -17,6 +22,18 @@ Eigen::Vector3d spindle_direction(const Machine& machine) {
   int along = 0;
   sum.cwiseAbs().maxCoeff(&along);
   return -Eigen::Vector3d::Unit(along) * std::copysign(1.0, sum[along]);
+}
+
+/// Moves along two directions that lead nearest to a point; the third column is zero, and so is its move.
+Eigen::Vector3d nearest_moves(Eigen::Matrix3d directions, const Eigen::Vector3d& wanted) {
+  for (int k = 0; k < 3; ++k) {
+    if (!directions.col(k).isZero()) continue;
+    directions.col(k) = directions.col((k + 1) % 3).cross(directions.col((k + 2) % 3));
+    Eigen::Vector3d moves = directions.inverse() * wanted;
+    moves[k] = 0.0;
+    return moves;
+  }
+  return directions.inverse() * wanted;
 }
 
 }  // namespace
@@ -87,16 +104,20 @@ std::optional<AxisPosition> SweptVolume::position_at(const Eigen::Vector3d& want
 std::optional<AxisPosition> SweptVolume::position_at(const Eigen::Vector3d& wanted_w, std::size_t tool,
                                                      const AxisPosition& rotary) const {
   AxisPosition position = rotary;
-  for (const AxisName name : kLinearAxes) position[index_of(name)] = 0.0;
+  const std::vector<AxisName> axes = linear_axes(settings_.machine);
+  for (const AxisName name : axes) position[index_of(name)] = 0.0;
   const Eigen::Vector3d at_zero = point_w(position, tool);
-  Eigen::Matrix3d directions;
-  for (const AxisName name : kLinearAxes) {
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();
+  for (const AxisName name : axes) {
     AxisPosition moved = position;
     moved[index_of(name)] = 1.0;
     directions.col(direction_of(name)) = point_w(moved, tool) - at_zero;
   }
-  const Eigen::Vector3d moves = directions.inverse() * (wanted_w - at_zero);
-  for (const AxisName name : kLinearAxes) {
+  const Eigen::Vector3d wanted = wanted_w - at_zero;
+  const Eigen::Vector3d moves =
+      axes.size() == 3 ? Eigen::Vector3d(directions.inverse() * wanted) : nearest_moves(directions, wanted);
+  if ((directions * moves - wanted).norm() > kAtPoint) return std::nullopt;
+  for (const AxisName name : axes) {
     const double q = programmed_position(moves[direction_of(name)]);
     const Axis& axis = settings_.machine.axis(name);
     if (q < axis.travel_min || q > axis.travel_max) return std::nullopt;

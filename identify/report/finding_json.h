@@ -10,8 +10,7 @@ Json finding_json(const EffectFinding& effect);
 /// plain, usual_causes (effect_meanings.h); of a kind of the user's own its summary, of a change of the model
 /// nothing.
 Json meaning_json(const EffectName& name);
-/// label, target, factor, unit; axes with title, places and dots; value and U95 in `unit`, those of the last
-/// axis next to each other; largest with its U95 and place; what is free.
+/// What is drawn of it (surface_json.h), its laws and what is free.
 Json surface_json(const SurfaceFinding& surface);
 /// centre x factor, mean and noise in units of `value_unit`, count.
 Json binned_json(const BinnedMean& means, double centre_factor, double value_factor);

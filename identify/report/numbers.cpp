@@ -1,5 +1,7 @@
 #include "volcal/identify/report/numbers.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -49,20 +51,32 @@ double position_factor(AxisName axis) { return 1.0 / position_unit(axis).si_per_
 
 std::string axis_letter(AxisName axis) { return std::string(1, letter_of(axis)); }
 
+namespace {
+
+/// "mm2" as "mm²".
+std::string with_raised_powers(const std::string& unit) {
+  constexpr std::array<const char*, 8> kRaised = {"²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string raised;
+  for (const char letter : unit) {
+    const bool is_power = letter >= '2' && letter <= '9' && !raised.empty();
+    raised += is_power ? kRaised[static_cast<std::size_t>(letter - '2')] : std::string(1, letter);
+  }
+  return raised;
+}
+
+}  // namespace
+
 std::string shown_unit(const std::string& edge_unit) {
   std::string shown = edge_unit;
   if (shown.starts_with("um") || shown.starts_with("urad")) shown.replace(0, 1, "µ");
   if (const std::size_t at = shown.find(" or urad"); at != std::string::npos) shown.replace(at + 4, 1, "µ");
   const std::size_t first = shown.find('/');
-  const std::size_t second = first == std::string::npos ? first : shown.find('/', first + 1);
-  if (second != std::string::npos) {
-    shown = shown.substr(0, first + 1) + "(" + shown.substr(first + 1, second - first - 1) + " " +
-            shown.substr(second + 1) + ")";
+  if (first != std::string::npos && shown.find('/', first + 1) != std::string::npos) {
+    std::string below = shown.substr(first + 1);
+    std::ranges::replace(below, '/', ' ');
+    shown = shown.substr(0, first + 1) + "(" + below + ")";
   }
-  for (const auto& [plain, raised] : {std::pair("m2", "m²"), std::pair("m3", "m³")}) {
-    if (const std::size_t at = shown.find(plain); at != std::string::npos) shown.replace(at, 2, raised);
-  }
-  return shown;
+  return with_raised_powers(shown);
 }
 
 const Observability* find_observability(const FitResult& result, const std::string& symbol) {

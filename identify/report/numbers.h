@@ -20,7 +20,7 @@ Json rounded_vector(const Eigen::Vector3d& vector, double factor, int digits = 5
 /// Edge units of an axis's position per m or rad.
 double position_factor(AxisName axis);
 std::string axis_letter(AxisName axis);
-/// Unit as printed: "um/m/K" becomes "µm/(m K)", "urad/m2" becomes "µrad/m²".
+/// Unit as printed: "um/m/K" becomes "µm/(m K)", "urad/mm3" becomes "µrad/mm³".
 std::string shown_unit(const std::string& edge_unit);
 
 /// Entry of the rank report; nullptr when the symbol has none.

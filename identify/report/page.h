@@ -44,6 +44,7 @@ Json summary_page(const PageInput& input);
 Json functions_page(const PageInput& input);
 Json locations_page(const PageInput& input);
 Json rotary_axes_page(const PageInput& input);
+Json surfaces_page(const PageInput& input);
 Json volume_page(const PageInput& input);
 Json residuals_page(const PageInput& input);
 Json outliers_page(const PageInput& input);

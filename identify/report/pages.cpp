@@ -12,6 +12,7 @@ constexpr std::array kPages = {
     Page{"functions", "Error functions", functions_page},
     Page{"locations", "Squareness and location", locations_page},
     Page{"rotary_axes", "Rotary axes", rotary_axes_page},
+    Page{"surfaces", "Surfaces and curves without a name", surfaces_page},
     Page{"volume", "Work volume", volume_page},
     Page{"residuals", "Residuals", residuals_page, kOfReadings},
     Page{"outliers", "Suspect readings", outliers_page, kOfReadings},

@@ -69,6 +69,7 @@ Json line_errors(const RotaryLine& drawn, double coverage_factor) {
         {{"symbol", symbol.name()},
          {"unit", tilt ? "µrad" : "µm"},
          {"visible", std::ranges::find(drawn.not_visible, symbol) == drawn.not_visible.end()},
+         {"by_convention", line.by_convention[static_cast<std::size_t>(place)]},
          {"value", rounded(value * kPerMicro)},
          {"U95", rounded(coverage_factor * std::sqrt(line.covariance(place, place)) * kPerMicro, 3)}});
   }
@@ -93,6 +94,14 @@ Json axis_line_json(const RotaryLine& drawn, double reach, double coverage_facto
       {"rotation_urad", rounded_vector(drawn.line.value.rotation, kPerMicro)},
       {"errors", line_errors(drawn, coverage_factor)},
       {"places", std::move(places)}};
+}
+
+Json carried_json(const CarriedDisplacement& carried) {
+  Json motions = Json::array();
+  for (const ErrorSymbol& motion : carried.motions) motions.push_back(motion.name());
+  return {{"carrying", axis_letter(carried.carrying)},
+          {"carried", axis_letter(carried.carried)},
+          {"motions", std::move(motions)}};
 }
 
 Json layer_json(const RotaryMap& map, double coverage_factor,
@@ -146,15 +155,17 @@ Json map_axes(const RotaryPictures& pictures) {
 }  // namespace
 
 Json rotary_json(const RotaryPictures& pictures) {
-  Json motions = Json::array(), lines = Json::array(), maps = Json::array();
+  Json motions = Json::array(), lines = Json::array(), carried = Json::array(), maps = Json::array();
   for (const RotaryMotion& motion : pictures.motions) motions.push_back(motion_json(motion));
   for (const RotaryLine& line : pictures.lines)
     lines.push_back(axis_line_json(line, pictures.reach, pictures.coverage_factor));
+  for (const CarriedDisplacement& each : pictures.carried) carried.push_back(carried_json(each));
   for (const RotaryMap& map : pictures.maps) maps.push_back(map_json(map, pictures.coverage_factor));
   return {{"coverage", rounded(pictures.coverage_factor)},
           {"reach_mm", rounded(pictures.reach * kPerMilli)},
           {"motions", std::move(motions)},
           {"lines", std::move(lines)},
+          {"carried", std::move(carried)},
           {"map_axes", map_axes(pictures)},
           {"maps", std::move(maps)}};
 }

@@ -47,6 +47,7 @@ std::map<AxisName, std::pair<double, double>> measured_positions(const FitResult
 ModelSpec model_with_measured_travel(const FitResult& result) {
   constexpr double kSameEnd = 1e-6;  // m or rad
   ModelSpec model = result.identified;
+  if (!model.effects.empty()) model.conditions = result.conditions;
   for (const auto& [axis, ends] : measured_positions(result)) {
     if (!result.machine.has_axis(axis)) continue;
     const Axis& travel = result.machine.axis(axis);

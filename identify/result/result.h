@@ -16,6 +16,7 @@
 #include "volcal/model/description/finding.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/description/model_spec.h"
+#include "volcal/model/description/recorded_conditions.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/parameters.h"
 
@@ -109,20 +110,6 @@ struct FunctionSummary {
   double measured_max = 0.0;
 };
 
-/// Range and mean of what was recorded beside the readings.
-struct RecordedRange {
-  double min = 0.0;
-  double mean = 0.0;
-  double max = 0.0;
-};
-
-/// Conditions under which the campaign was measured, as far as its files record them.
-struct RecordedConditions {
-  std::map<std::string, RecordedRange> temperature_degC;  ///< by channel
-  std::optional<RecordedRange> time;                      ///< s, campaign clock
-  std::optional<RecordedRange> feed;                      ///< m/s
-};
-
 struct Timing {
   std::string stage;
   double seconds = 0.0;
@@ -181,8 +168,8 @@ std::vector<Finding> contradictions(const FitResult& result);
 /// First and last position with readings of every axis that has functions, m or rad.
 std::map<AxisName, std::pair<double, double>> measured_positions(const FitResult& result);
 
-/// The identified model with the positions that were measured, where these are not the whole travel: it says
-/// of an error at any position what the result says.
+/// The identified model with the positions that were measured, where these are not the whole travel, and,
+/// where it has effects, the conditions: it says of an error at any position what the result says.
 ModelSpec model_with_measured_travel(const FitResult& result);
 
 }  // namespace volcal

@@ -11,9 +11,12 @@
 #include "volcal/identify/solve/normals/minimise.h"
 #include "volcal/identify/solve/normals/stated_sigma.h"
 #include "volcal/identify/solve/residuals.h"
+#include "volcal/identify/solve/unknown_rotary_axes.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
+#include "volcal/model/effects/registry.h"
+#include "volcal/model/observation/campaign_binding.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
@@ -58,41 +61,132 @@ std::vector<double> weights_of(const ReadingIndex& index, const std::vector<doub
   return weight;
 }
 
-/// u of every prediction: the model's covariance, less what the re-estimated nuisance parameters absorb.
-/// Beyond what was measured it is that of the functions there, not that of the value that is held.
-std::vector<double> prediction_uncertainty(const ReadingIndex& index, const DatumSpace& datum,
-                                           const NormalEquations& sums, const GaussianPrior& prior,
-                                           const Eigen::VectorXd& parameters, const FitResult& identified) {
+/// Parameters that the campaign finds anew.
+DatumSpace nuisance_of(const ParameterLayout& layout, const Machine& machine,
+                       const Eigen::VectorXd& parameters) {
+  return {layout, machine, parameters, [](ErrorSymbol) { return false; },
+          [](const ParameterBlock& block) { return !is_frozen_with_the_model(block); }};
+}
+
+GaussianPrior prior_of_nuisance(const ParameterLayout& layout, const DatumSpace& nuisance,
+                                const Eigen::VectorXd& z) {
+  GaussianPrior prior = GaussianPrior::none(nuisance.size());
+  for (const auto& block : nuisance.blocks()) {
+    const ParameterBlock& source = layout.blocks[block.block];
+    for (int k = 0; k < block.size; ++k) {
+      const double held = source.prior_sigma[k] > 0.0 ? source.prior_sigma[k] : kUnheldNuisance;
+      prior.precision(block.offset + k, block.offset + k) = 1.0 / (held * held);
+      prior.mean[block.offset + k] = source.prior_sigma[k] > 0.0 ? source.prior_mean[k] : z[block.offset + k];
+    }
+  }
+  return prior;
+}
+
+/// A campaign with a frozen model at its nuisance parameters.
+struct Prediction {
+  const ReadingIndex& index;
+  const DatumSpace& nuisance;
+  const GaussianPrior& prior;
+  const NormalEquations& sums;
+  const Eigen::VectorXd& parameters;
+};
+
+/// Errors that are not known exactly, by their places among the parameters of a model.
+struct OpenErrors {
+  std::vector<int> place;
+  Eigen::MatrixXd covariance;
+
+  void add(const std::vector<int>& more, const Eigen::MatrixXd& own) {
+    const auto before = covariance.rows();
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(before + own.rows(), before + own.rows());
+    all.topLeftCorner(before, before) = covariance;
+    all.bottomRightCorner(own.rows(), own.rows()) = own;
+    covariance = std::move(all);
+    place.insert(place.end(), more.begin(), more.end());
+  }
+};
+
+/// u of every prediction: the covariance of open errors, less what the re-estimated nuisance parameters
+/// absorb. Beyond what was measured it is that of the functions there, not that of the value that is held.
+std::vector<double> prediction_uncertainty(const Prediction& prediction, const OpenErrors& open) {
+  const ReadingIndex& index = prediction.index;
   std::optional<MeasurementModel> unheld;
   if (ModelSpec spec = index.model().spec(); !spec.measured.empty()) {
     spec.measured.clear();
-    unheld.emplace(index.model().campaign(), std::move(spec)).set_second_order_remainder(parameters);
+    unheld.emplace(index.model().campaign(), std::move(spec))
+        .set_second_order_remainder(prediction.parameters);
   }
   const MeasurementModel& model = unheld ? *unheld : index.model();
-  const auto shared = shared_parameters(identified.layout, model.layout());
-  std::vector<int> fitted, here;
-  for (const auto& [source, target] : shared) {
-    fitted.push_back(source);
-    here.push_back(target);
-  }
-  const Eigen::MatrixXd covariance = identified.covariance(fitted, fitted);
-  const Eigen::MatrixXd nuisance = datum.reduce_matrix(sums.matrix) + prior.precision;
-  const Eigen::MatrixXd coupling = datum.reduce_rows(sums.matrix(here, Eigen::all)).transpose();
+  const DatumSpace& datum = prediction.nuisance;
+  const Eigen::MatrixXd nuisance = datum.reduce_matrix(prediction.sums.matrix) + prediction.prior.precision;
+  const Eigen::MatrixXd coupling =
+      datum.reduce_rows(prediction.sums.matrix(open.place, Eigen::all)).transpose();
   const Eigen::MatrixXd absorbed =
       solve_positive_definite(nuisance, coupling);  // d nuisance / d model, sign taken below
   std::vector<double> u(index.observations());
   RowJacobian row;
   for (const auto& [setup, reading] : index.sorted()) {
-    model.linearize(setup, reading, parameters, row);
+    model.linearize(setup, reading, prediction.parameters, row);
     for (int channel = 0; channel < row.channels; ++channel) {
       const Eigen::VectorXd dense = dense_row(model.layout(), row, channel);
-      Eigen::VectorXd effective = dense(here);
+      Eigen::VectorXd effective = dense(open.place);
       effective -= absorbed.transpose() * datum.reduce_gradient(dense);
       u[index.first_observation(setup, reading) + static_cast<std::size_t>(channel)] =
-          std::sqrt(std::max(0.0, effective.dot(covariance * effective)));
+          std::sqrt(std::max(0.0, effective.dot(open.covariance * effective)));
     }
   }
   return u;
+}
+
+/// Those of an identified model.
+OpenErrors identified_errors(const FitResult& identified, const ParameterLayout& layout) {
+  OpenErrors open;
+  std::vector<int> fitted;
+  for (const auto& [source, target] : shared_parameters(identified.layout, layout)) {
+    fitted.push_back(source);
+    open.place.push_back(target);
+  }
+  open.covariance = identified.covariance(fitted, fitted);
+  return open;
+}
+
+/// The values of parameters in the layout of a model with more errors.
+Eigen::VectorXd carried(const Eigen::VectorXd& parameters, const ParameterLayout& from,
+                        const MeasurementModel& to) {
+  Eigen::VectorXd values = to.initial_parameters();
+  for (const ParameterBlock& block : from.blocks) {
+    const ParameterBlock* place = to.layout().find_block(block.name);
+    values.segment(place->offset, block.size()) = parameters.segment(block.offset, block.size());
+  }
+  for (const auto& [source, target] : shared_parameters(from, to.layout()))
+    values[target] = parameters[source];
+  return values;
+}
+
+/// u of every prediction with what rotary axes may do that move here and of which the model has no errors.
+std::vector<double> uncertainty_with_unknown_axes(const Prediction& known,
+                                                  const std::vector<AxisName>& unknown,
+                                                  const FitResult& identified,
+                                                  const std::vector<double>& sigma,
+                                                  const std::vector<double>& weight, int threads) {
+  const MeasurementModel& without = known.index.model();
+  const Campaign& campaign = without.campaign();
+  MeasurementModel model(campaign, with_unknown_errors(campaign, without.spec(), unknown));
+  const ParameterLayout& layout = model.layout();
+  const Eigen::VectorXd parameters = carried(known.parameters, without.layout(), model);
+  model.set_second_order_remainder(parameters);
+  const ReadingIndex index(model);
+  const DatumSpace nuisance = nuisance_of(layout, campaign.machine, parameters);
+  const GaussianPrior prior = prior_of_nuisance(layout, nuisance, nuisance.reduced(parameters));
+  const NormalEquations sums = NormalAccumulator(index, weight, nullptr, threads).accumulate(parameters);
+  OpenErrors open = identified_errors(identified, layout);
+  const Eigen::MatrixXd wide = covariance_of_unknown_errors(model, unknown, parameters, sigma);
+  std::vector<int> place;
+  for (int k = 0; k < layout.size; ++k) {
+    if (wide(k, k) > 0.0) place.push_back(k);
+  }
+  open.add(place, wide(place, place));
+  return prediction_uncertainty({index, nuisance, prior, sums, parameters}, open);
 }
 
 /// With the model's errors held.
@@ -138,6 +232,34 @@ std::vector<Finding> missing_rotary_errors(const Campaign& campaign, const Model
   return findings;
 }
 
+namespace {
+
+/// Curves and surfaces that fade out at readings beyond those they were drawn from.
+std::vector<Finding> faded_at_readings(const Campaign& campaign, const ModelSpec& model) {
+  const auto is_surface = [&](const EffectSpec& spec) {
+    return find_effect(spec.kind)->make(spec, model.file)->surface() != nullptr;
+  };
+  std::vector<Finding> findings;
+  if (std::ranges::none_of(model.effects, is_surface)) return findings;
+  const KinematicChain chain(campaign.machine);
+  const CampaignBinding binding = bind_campaign(campaign, frozen_model(model), chain);
+  const std::vector<SetupView> views = setup_views(campaign, binding, chain);
+  for (const EffectSpec& spec : model.effects) {
+    const std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, model.file);
+    std::int64_t readings = 0;
+    for (const SetupView& view : views) {
+      const Eigen::MatrixXd faded = effect->faded_drivers(view);
+      for (Eigen::Index row = 0; row < faded.rows(); ++row) readings += faded.row(row).isZero(0.0) ? 0 : 1;
+    }
+    if (readings == 0) continue;
+    findings.push_back({FindingCode::ErrorsFadedBeyondReadings,
+                        {{"effect", effect_label(*effect)}, {"readings", readings}}});
+  }
+  return findings;
+}
+
+}  // namespace
+
 std::vector<Finding> held_beyond_measured(const Campaign& campaign, const ModelSpec& model) {
   constexpr double kBeyondEnd = 1e-6;  // m or rad
   std::vector<Finding> findings;
@@ -161,6 +283,7 @@ std::vector<Finding> held_beyond_measured(const Campaign& campaign, const ModelS
                          {"travel_from", number(axis.travel_min)},
                          {"travel_to", number(axis.travel_max)}}});
   }
+  std::ranges::move(faded_at_readings(campaign, model), std::back_inserter(findings));
   return findings;
 }
 
@@ -173,19 +296,9 @@ Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model_spec,
   Eigen::VectorXd parameters = model.initial_parameters();
   std::vector<double> sigma = stated_sigma(index, parameters);
   std::vector<double> weight = weights_of(index, sigma);
-  const DatumSpace datum(
-      model.layout(), campaign.machine, parameters, [](ErrorSymbol) { return false; },
-      [](const ParameterBlock& block) { return !is_frozen_with_the_model(block); });
-  GaussianPrior prior = GaussianPrior::none(datum.size());
+  const DatumSpace datum = nuisance_of(model.layout(), campaign.machine, parameters);
   Eigen::VectorXd z = datum.reduced(parameters);
-  for (const auto& block : datum.blocks()) {
-    const ParameterBlock& source = model.layout().blocks[block.block];
-    for (int k = 0; k < block.size; ++k) {
-      const double held = source.prior_sigma[k] > 0.0 ? source.prior_sigma[k] : kUnheldNuisance;
-      prior.precision(block.offset + k, block.offset + k) = 1.0 / (held * held);
-      prior.mean[block.offset + k] = source.prior_sigma[k] > 0.0 ? source.prior_mean[k] : z[block.offset + k];
-    }
-  }
+  const GaussianPrior prior = prior_of_nuisance(model.layout(), datum, z);
   MinimiseOptions options;
   options.threads = threads;
   model.set_second_order_remainder(parameters);
@@ -215,9 +328,13 @@ Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model_spec,
   evaluation.parameters = parameters;
   evaluation.adjustment = adjustment_of(model, campaign.machine, parameters, prior, datum, sigma);
   evaluation.model_u.assign(index.observations(), 0.0);
-  if (identified != nullptr) {
-    evaluation.model_u = prediction_uncertainty(index, datum, sums, prior, parameters, *identified);
-  }
+  if (identified == nullptr) return evaluation;
+  const Prediction prediction{index, datum, prior, sums, parameters};
+  const std::vector<AxisName> unknown = rotary_axes_without_errors(campaign, model.spec());
+  evaluation.model_u =
+      unknown.empty()
+          ? prediction_uncertainty(prediction, identified_errors(*identified, model.layout()))
+          : uncertainty_with_unknown_axes(prediction, unknown, *identified, sigma, weight, threads);
   return evaluation;
 }
 
@@ -282,9 +399,10 @@ Spread spread_of(const Campaign& campaign, const std::vector<ResidualRecord>& re
 Validation validate(const Campaign& campaign, const FitResult& result, int threads) {
   Validation validation;
   validation.before = evaluate_model(campaign, nominal_model(), nullptr, threads);
-  const bool is_stated = result.covariance.isZero(0.0);
-  validation.after =
-      evaluate_model(campaign, model_with_measured_travel(result), is_stated ? nullptr : &result, threads);
+  const ModelSpec model = model_with_measured_travel(result);
+  const bool is_exact =
+      result.covariance.isZero(0.0) && rotary_axes_without_errors(campaign, frozen_model(model)).empty();
+  validation.after = evaluate_model(campaign, model, is_exact ? nullptr : &result, threads);
   ValidationFigures& figures = validation.figures;
   const Spread before = spread_of(campaign, validation.before.residuals);
   const Spread after = spread_of(campaign, validation.after.residuals);

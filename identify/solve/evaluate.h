@@ -32,11 +32,14 @@ struct Evaluation {
 /// One per rotary axis that moves in the campaign and has no errors in a model that states some.
 std::vector<Finding> missing_rotary_errors(const Campaign& campaign, const ModelSpec& model);
 
-/// "errors.held-beyond-readings" of every axis on which the campaign has readings beyond model.measured.
+/// "errors.held-beyond-readings" of every axis on which the campaign has readings beyond model.measured, and
+/// "errors.faded-beyond-readings" of every curve or surface with readings beyond those it was drawn from.
 std::vector<Finding> held_beyond_measured(const Campaign& campaign, const ModelSpec& model);
 
 /// Beyond model.measured errors keep their last value, as in tables.
 /// `identified` supplies the covariance when `model` is its identified model; null = predictions without u.
+/// Rotary axes that move in the campaign and of which the model has no errors add the wide prior of these to
+/// that u (unknown_rotary_axes.h).
 /// Throws InputError when the campaign does not fit the model's machine.
 Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model,
                           const FitResult* identified = nullptr, int threads = 0);

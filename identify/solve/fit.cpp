@@ -276,10 +276,9 @@ class Identification {
     converged_ = correlated_.converged;
   }
 
-  /// Where an error is not visible, wide priors decide what it is, and with it what is left for the noise.
   bool models_noise() const {
     return options_.noise == NoisePolicy::Automatic && options_.loss == RobustLoss::None &&
-           options_.variance_components && !rank_.deficient;
+           options_.variance_components;
   }
 
   /// Estimated about the white adjustment and once more about that which follows from it: smoothing chosen
@@ -291,12 +290,14 @@ class Identification {
     options.uncertainty = false;
     NoiseEstimate estimate = estimate_noise(model_, *datum_, campaign_noise_, z_, prior(), options);
     if (is_more_than_white(estimate)) {
+      const WhiteAdjustment white{z_, terms_, converged_, result_.iterations, result_.final_cost};
       noise_ = estimate.parameters();
       adjust_to_noise(kEvidenceRounds);
       options.uncertainty = true;
       estimate = estimate_noise(model_, *datum_, campaign_noise_, z_, prior(), options, &estimate);
       noise_ = estimate.parameters();
       adjust_to_noise(1);
+      if (rank_.deficient && !converged_) return take_back(white);
       remove_outliers();
     }
     result_.noise.estimated = true;
@@ -304,6 +305,26 @@ class Identification {
     result_.noise.groups = campaign_noise_.groups;
     result_.noise.rows = noise_table(estimate);
     for (const InstrumentNoise& own : estimate.instruments) white_log_u_.push_back(own.log_uncertainty.white);
+  }
+
+  struct WhiteAdjustment {
+    Eigen::VectorXd z;
+    std::vector<SmoothingTerm> terms;
+    bool converged;
+    int iterations;
+    double final_cost;
+  };
+
+  /// Generalised steps need not contract where an error is not visible: then readings stay independent.
+  void take_back(const WhiteAdjustment& white) {
+    z_ = white.z;
+    terms_ = white.terms;
+    converged_ = white.converged;
+    result_.iterations = white.iterations;
+    result_.final_cost = white.final_cost;
+    noise_.clear();
+    parameters_ = datum_->raw(z_);
+    expand();
   }
 
   CampaignNoise noise_of_campaign() const {

@@ -19,7 +19,8 @@
 namespace volcal {
 
 enum class OutlierPolicy { List, Remove };
-/// White: independent readings; also with a robust loss, kept stated sigma or errors that are not visible.
+/// White: independent readings; also with a robust loss or kept stated sigma, and where an error is not
+/// visible and the search for the noise does not end.
 enum class NoisePolicy { Automatic, White };
 
 struct FitOptions {

@@ -159,7 +159,7 @@ class RankAnalyser {
   Finding cause_alone(const ErrorStretch& stretch) const {
     if (stretch.function == nullptr || !part_is_seen(stretch))
       return cause_of_unseen(model_.campaign(), stretch.name);
-    return cause_few_positions(stretch.name, stretch.function->symbol.axis);
+    return cause_of_open_course(model_, stretch.function->symbol, stretch.size);
   }
 
   /// Does a reading change with some combination of the error's coefficients?
@@ -204,7 +204,8 @@ class RankAnalyser {
       return cause_like_straightness(stretch.name, straightness->function->symbol);
     std::vector<std::string> partners = partners_of(stretch);
     if (!partners.empty()) return cause_exchangeable(model_, stretch.name, std::move(partners));
-    if (stretch.function != nullptr) return cause_few_positions(stretch.name, stretch.function->symbol.axis);
+    if (stretch.function != nullptr)
+      return cause_of_open_course(model_, stretch.function->symbol, stretch.size);
     return {FindingCode::NotVisibleReadingsTooFew, {{"error", stretch.name}}};
   }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -9,6 +11,8 @@
 #include "volcal/identify/solve/tool_tips.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/parameter_names.h"
+#include "volcal/model/description/rotary_places.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
 
 namespace volcal {
@@ -16,16 +20,19 @@ namespace {
 
 std::string letter(AxisName axis) { return std::string(1, letter_of(axis)); }
 
+constexpr double kLeastApart = 1e-3;  // of the travel
+constexpr double kPiecesOfAGap = 2.0;
+
 bool axis_moves(const Campaign& campaign, AxisName axis) {
   const MeasuredRange range = measured_range(campaign, axis);
   return range.max - range.min > 1e-3 * campaign.machine.axis(axis).travel();
 }
 
-/// Tools in use, as offsets across direction `k`.
-double largest_sideways_offset(const Campaign& campaign, int k) {
+/// Of tools, as offsets across direction `k`.
+double largest_sideways_offset(const Machine& machine, const std::set<std::size_t>& tools, int k) {
   double largest = 0.0;
-  for (const Setup& setup : campaign.setups) {
-    Eigen::Vector3d offset = campaign.machine.tools[setup.tool].offset;
+  for (const std::size_t tool : tools) {
+    Eigen::Vector3d offset = machine.tools[tool].offset;
     offset[k] = 0.0;
     largest = std::max(largest, offset.norm());
   }
@@ -47,6 +54,38 @@ std::size_t tools_in_use(const Campaign& campaign) {
   return tools.size();
 }
 
+/// Positions of an axis that differ, ascending.
+std::vector<double> different_positions(const Campaign& campaign, AxisName axis) {
+  std::vector<double> all;
+  for (const Setup& setup : campaign.setups) {
+    const std::vector<bool> left_out = setup.rows_left_out();
+    const std::vector<double>& position = setup.readings.position[index_of(axis)];
+    for (std::size_t row = 0; row < position.size(); ++row) {
+      if (!left_out[row]) all.push_back(position[row]);
+    }
+  }
+  std::ranges::sort(all);
+  const double same = kLeastApart * campaign.machine.axis(axis).travel();
+  std::vector<double> different;
+  for (const double position : all) {
+    if (different.empty() || position - different.back() > same) different.push_back(position);
+  }
+  return different;
+}
+
+/// For a function of so many unknowns: no more than these, or none over a stretch of two of its pieces.
+bool are_too_few(const std::vector<double>& positions, int unknowns) {
+  if (static_cast<int>(positions.size()) <= unknowns) return true;
+  double gap = 0.0;
+  for (std::size_t i = 1; i < positions.size(); ++i) gap = std::max(gap, positions[i] - positions[i - 1]);
+  return gap > kPiecesOfAGap * (positions.back() - positions.front()) / unknowns;
+}
+
+bool is_on_workpiece_side(const Machine& machine, AxisName axis) {
+  const auto joint = std::ranges::find(machine.structure.joints, axis, &Joint::axis);
+  return joint != machine.structure.joints.end() && joint->workpiece_side;
+}
+
 /// The axis of an error function whose readings stand at one or two positions of it.
 std::optional<AxisName> axis_at_few_positions(const Campaign& campaign, const std::string& name) {
   const auto symbol = ErrorSymbol::parse(name);
@@ -54,6 +93,7 @@ std::optional<AxisName> axis_at_few_positions(const Campaign& campaign, const st
   return symbol->axis;
 }
 
+constexpr double kOnAxis = 1e-3;        // m
 constexpr double kSidewaysTool = 0.06;  // m
 constexpr double kTurned = 1e-3;        // rad, from home
 constexpr std::size_t kEnoughSpheres = 3;
@@ -124,17 +164,20 @@ std::size_t spheres(const ParameterLayout& layout) {
   }));
 }
 
-/// What tells errors of rotary axes apart: poses of both, places on the table, tools to the side.
-std::vector<std::string> rotary_remedies(const MeasurementModel& model) {
+/// What tells errors of rotary axes apart: poses of both, places on the table, tools to the side. Of tools
+/// those count that the axis moves; `cause` tells where others are in use.
+std::vector<std::string> rotary_remedies(const MeasurementModel& model, AxisName axis, Finding& cause) {
   const Campaign& campaign = model.campaign();
   std::vector<std::string> remedies;
   const std::vector<AxisName> moving = moving_rotary_axes(campaign);
   if (moving.size() > 1 && !turns_two_at_once(campaign, moving)) remedies.emplace_back("combined-poses");
   const std::size_t sphere_count = spheres(model.layout());
   if (sphere_count > 0 && sphere_count < kEnoughSpheres) remedies.emplace_back("spheres");
-  if (tools_in_use(campaign) < 2) remedies.emplace_back("second-tool");
-  if (largest_sideways_offset(campaign, direction_of(AxisName::Z)) < kSidewaysTool)
+  const std::set<std::size_t> tools = tools_moved_by(campaign, axis);
+  if (tools.size() < 2) remedies.emplace_back("second-tool");
+  if (largest_sideways_offset(campaign.machine, tools, direction_of(AxisName::Z)) < kSidewaysTool)
     remedies.emplace_back("mandrel");
+  if (tools.size() < tools_in_use(campaign)) cause.data["turning"] = letter(axis);
   return remedies;
 }
 
@@ -158,9 +201,14 @@ Finding cause_of_unseen(const Campaign& campaign, const std::string& name) {
   const auto symbol = ErrorSymbol::parse(name);
   if (symbol && is_rotation(symbol->component)) {
     const int k = direction_of(symbol->component);
-    const bool on_axis = largest_sideways_offset(campaign, k) < 1e-3;
-    return {on_axis ? FindingCode::NotVisibleToolsOnOneAxis : FindingCode::NotVisibleNoLeverArm,
-            {{"error", name}, {"about", std::string(1, "XYZ"[k])}}};
+    const bool on_table = is_rotary(symbol->axis) && is_on_workpiece_side(campaign.machine, symbol->axis);
+    const double sideways =
+        largest_sideways_offset(campaign.machine, tools_moved_by(campaign, symbol->axis), k);
+    const bool on_axis = !on_table && sideways < kOnAxis;
+    Finding cause{on_axis ? FindingCode::NotVisibleToolsOnOneAxis : FindingCode::NotVisibleNoLeverArm,
+                  {{"error", name}, {"about", std::string(1, "XYZ"[k])}}};
+    if (on_table) cause.data["table"] = letter(symbol->axis);
+    return cause;
   }
   Finding cause{FindingCode::NotVisibleNoReadingChanges, {{"error", name}}};
   if (symbol) {
@@ -171,8 +219,22 @@ Finding cause_of_unseen(const Campaign& campaign, const std::string& name) {
   return cause;
 }
 
-Finding cause_few_positions(const std::string& name, AxisName axis) {
-  return {FindingCode::NotVisibleFewPositions, {{"error", name}, {"axis", letter(axis)}}};
+Finding cause_of_open_course(const MeasurementModel& model, ErrorSymbol symbol, int unknowns) {
+  const FunctionSpec& function = model.spec().function(symbol);
+  const bool repeats = is_rotary(symbol.axis) && function.basis == "fourier";
+  const std::vector<double> positions = repeats ? places_in_turn(model.campaign(), symbol.axis)
+                                                : different_positions(model.campaign(), symbol.axis);
+  if (!are_too_few(positions, unknowns))
+    return {FindingCode::NotVisibleReadingsTooFew, {{"error", symbol.name()}}};
+  Finding cause{FindingCode::NotVisibleFewPositions,
+                {{"error", symbol.name()}, {"axis", letter(symbol.axis)}}};
+  if (!repeats) return cause;
+  cause.data["positions"] = static_cast<std::int64_t>(positions.size());
+  cause.data["told"] = static_cast<std::int64_t>(most_periods(positions));
+  cause.data["harmonics"] = static_cast<std::int64_t>(function.degree);
+  if (const int parts = regular_parts(positions); parts > 0)
+    cause.data["spacing"] = FindingNumber{2.0 * std::numbers::pi / parts, "deg", kRadianPerDegree};
+  return cause;
 }
 
 Finding cause_like_straightness(const std::string& name, ErrorSymbol straightness) {
@@ -204,8 +266,8 @@ Finding cause_exchangeable(const MeasurementModel& model, const std::string& nam
     }
   }
   if (station_count > 0 && station_count < 3) remedies.emplace_back("stations");
-  if (rotary_axis_of(name)) {
-    for (std::string& remedy : rotary_remedies(model)) remedies.push_back(std::move(remedy));
+  if (const auto rotary = rotary_axis_of(name)) {
+    for (std::string& remedy : rotary_remedies(model, *rotary, cause)) remedies.push_back(std::move(remedy));
   } else if (tools_in_use(model.campaign()) < 2) {
     remedies.emplace_back("second-tool");
   }

@@ -14,8 +14,10 @@ namespace volcal {
 std::optional<Finding> cause_of_standing(const Campaign& campaign, const std::string& name);
 /// Of an error that is not seen even when everything else is known.
 Finding cause_of_unseen(const Campaign& campaign, const std::string& name);
-/// Of an error motion whose course between the readings nothing tells.
-Finding cause_few_positions(const std::string& name, AxisName axis);
+/// Of an error motion whose course between the readings nothing tells, though they see it; `unknowns`: as
+/// many as its function has. Too few positions, where they are, of a rotary axis with the periods a turn that
+/// they tell; else readings that are too few or too noisy.
+Finding cause_of_open_course(const MeasurementModel& model, ErrorSymbol symbol, int unknowns);
 /// Of a squareness that positions along its axis would tell from a straightness.
 Finding cause_like_straightness(const std::string& name, ErrorSymbol straightness);
 /// Of an error that can be exchanged with others, and what tells it from them.

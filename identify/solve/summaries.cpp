@@ -95,6 +95,8 @@ ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
   identified.file.clear();
   for (const ErrorSymbol symbol : layout.symbols()) {
     FunctionSpec& function = identified.functions[symbol];
+    function.smoothed = function.automatic_degree ||
+                        (function.knots == KnotChoice::Automatic && find_basis(function.basis)->uses_knots);
     function.knots = KnotChoice::Explicit;
     function.automatic_degree = false;
     const Eigen::VectorXd coefficients = layout.coefficients(symbol, parameters);

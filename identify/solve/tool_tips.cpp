@@ -1,12 +1,15 @@
 #include "volcal/identify/solve/tool_tips.h"
 
 #include <Eigen/Core>
-#include <set>
+#include <algorithm>
+#include <map>
+#include <utility>
 
 namespace volcal {
 namespace {
 
 constexpr double kDistinctTips = 10e-3;  // m, tips of tools that readings separate
+constexpr double kLeastMovement = 1e-3;  // of the travel
 
 /// The axis that an error function, or a squareness, belongs to.
 std::optional<AxisName> axis_of_error(const std::string& name) {
@@ -14,21 +17,20 @@ std::optional<AxisName> axis_of_error(const std::string& name) {
   return turned_axis(name);
 }
 
-/// Tips of all tools in use lie on one line: nothing tells the turns about it from no turn. "X", "Y" or "Z"
+/// Tips of all these tools lie on one line: nothing tells the turns about it from no turn. "X", "Y" or "Z"
 /// across the line, or nothing.
-std::optional<char> across_tool_line(const Campaign& campaign) {
-  const auto offset = [&](const Setup& setup) -> const Eigen::Vector3d& {
-    return campaign.machine.tools[setup.tool].offset;
-  };
-  const Eigen::Vector3d first = offset(campaign.setups.front());
+std::optional<char> across_tool_line(const Machine& machine, const std::set<std::size_t>& tools) {
+  if (tools.empty()) return std::nullopt;
+  const Eigen::Vector3d first = machine.tools[*tools.begin()].offset;
   Eigen::Vector3d along = Eigen::Vector3d::Zero();
-  for (const Setup& setup : campaign.setups) {
-    if ((offset(setup) - first).norm() > along.norm()) along = offset(setup) - first;
+  for (const std::size_t tool : tools) {
+    const Eigen::Vector3d from_first = machine.tools[tool].offset - first;
+    if (from_first.norm() > along.norm()) along = from_first;
   }
   if (along.norm() < kDistinctTips) return std::nullopt;
   along.normalize();
-  for (const Setup& setup : campaign.setups) {
-    const Eigen::Vector3d from_first = offset(setup) - first;
+  for (const std::size_t tool : tools) {
+    const Eigen::Vector3d from_first = machine.tools[tool].offset - first;
     if ((from_first - from_first.dot(along) * along).norm() > kDistinctTips) return std::nullopt;
   }
   Eigen::Index least = 0;
@@ -36,8 +38,10 @@ std::optional<char> across_tool_line(const Campaign& campaign) {
   return "XYZ"[least];
 }
 
-/// Rotations of one axis and what goes with them: what a tool off the line of the others separates.
-bool turns_about_tools(const std::string& error, const std::vector<std::string>& partners) {
+/// The axis where all is rotations of one axis and what goes with them: what a tool off the line of the
+/// others separates.
+std::optional<AxisName> axis_that_turns_tools(const std::string& error,
+                                              const std::vector<std::string>& partners) {
   std::set<AxisName> axes;
   bool rotation = false;
   const auto add = [&](const std::string& name) {
@@ -47,7 +51,7 @@ bool turns_about_tools(const std::string& error, const std::vector<std::string>&
   };
   add(error);
   for (const std::string& partner : partners) add(partner);
-  return rotation && axes.size() == 1;
+  return rotation && axes.size() == 1 ? std::optional(*axes.begin()) : std::nullopt;
 }
 
 }  // namespace
@@ -59,10 +63,30 @@ std::optional<AxisName> turned_axis(const std::string& name) {
   return location->axis;
 }
 
+std::set<std::size_t> tools_moved_by(const Campaign& campaign, AxisName axis) {
+  std::map<std::size_t, std::pair<double, double>> ends;  // of the axis, by tool
+  for (const Setup& setup : campaign.setups) {
+    const std::vector<bool> left_out = setup.rows_left_out();
+    const std::vector<double>& position = setup.readings.position[index_of(axis)];
+    for (std::size_t row = 0; row < position.size(); ++row) {
+      if (left_out[row]) continue;
+      const auto [own, is_new] = ends.try_emplace(setup.tool, position[row], position[row]);
+      own->second.first = std::min(own->second.first, position[row]);
+      own->second.second = std::max(own->second.second, position[row]);
+    }
+  }
+  std::set<std::size_t> tools;
+  for (const auto& [tool, end] : ends) {
+    if (end.second - end.first > kLeastMovement * campaign.machine.axis(axis).travel()) tools.insert(tool);
+  }
+  return tools;
+}
+
 std::optional<char> third_tool_across(const Campaign& campaign, const std::string& error,
                                       const std::vector<std::string>& partners) {
-  if (!turns_about_tools(error, partners)) return std::nullopt;
-  return across_tool_line(campaign);
+  const auto axis = axis_that_turns_tools(error, partners);
+  if (!axis) return std::nullopt;
+  return across_tool_line(campaign.machine, tools_moved_by(campaign, *axis));
 }
 
 }  // namespace volcal

@@ -2,6 +2,7 @@
 /// What the tools of a campaign can tell of the rotations of an axis.
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,12 @@ namespace volcal {
 /// The linear axis whose direction a squareness turns; nothing for other names.
 std::optional<AxisName> turned_axis(const std::string& name);
 
-/// To which side a third tool helps, 'X', 'Y' or 'Z': where the tips of all tools in use lie on one line, and
+/// Tools, by their places in the machine file, with which readings stand at more than one position of an
+/// axis: the others tell nothing of its errors.
+std::set<std::size_t> tools_moved_by(const Campaign& campaign, AxisName axis);
+
+/// To which side a third tool helps, 'X', 'Y' or 'Z': where the tips of all tools that the axis of the error
+/// moves lie on one line, and
 /// an error and what it can be exchanged with are rotations of one axis and what goes with them. Nothing
 /// moves the tips when the axis turns about that line. Nothing otherwise.
 std::optional<char> third_tool_across(const Campaign& campaign, const std::string& error,

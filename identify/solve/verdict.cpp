@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "volcal/identify/solve/adjustment.h"
+#include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/rotary_places.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
@@ -165,6 +169,25 @@ void report_unrecorded_drivers(const Campaign& campaign, const CampaignBinding& 
   }
 }
 
+/// Of functions whose harmonics follow from the readings: a regular grid hides the higher ones, and no error
+/// is reported that is not visible.
+void report_hidden_harmonics(const Campaign& campaign, FitResult& result) {
+  for (const AxisName axis : moving_rotary_axes(campaign)) {
+    const bool is_periodic = std::ranges::any_of(result.identified.functions, [&](const auto& entry) {
+      return entry.first.axis == axis && entry.second.basis == "fourier";
+    });
+    const std::vector<double> places = places_in_turn(campaign, axis);
+    const int parts = regular_parts(places), told = most_periods(places);
+    if (!is_periodic || parts == 0 || told >= kMostAutomaticHarmonics) continue;
+    result.findings.push_back(
+        {FindingCode::RotaryHarmonicsHidden,
+         {{"axis", std::string(1, letter_of(axis))},
+          {"positions", static_cast<std::int64_t>(places.size())},
+          {"told", static_cast<std::int64_t>(told)},
+          {"spacing", FindingNumber{2.0 * std::numbers::pi / parts, "deg", kRadianPerDegree}}}});
+  }
+}
+
 void report_lack_of_fit(FitResult& result) {
   result.findings.push_back(
       {FindingCode::FitLackOfFit,
@@ -181,6 +204,7 @@ void judge(const Campaign& campaign, const CampaignBinding& binding, const Adjus
   const double exceedance = result.dof > 0.0 ? chi_squared_exceedance(result.chi2, result.dof) : 1.0;
   const bool lack = exceedance < kSignificanceOfLackOfFit && result.sigma0 > kSmallestLackOfFit;
   result.findings.insert(result.findings.end(), result.rank.invisible.begin(), result.rank.invisible.end());
+  report_hidden_harmonics(campaign, result);
   report_left_out(campaign, result);
   report_outliers(result);
   report_contradicted_priors(result);

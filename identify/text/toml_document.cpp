@@ -86,6 +86,9 @@ std::string unknown_remedy(std::string_view key, const std::vector<std::string>&
   return suggest_name(key, known, "keys here");
 }
 
+/// Standard deviations and radii are never negative.
+bool is_size(const std::string& stem) { return stem.ends_with("sigma") || stem.ends_with("radius"); }
+
 bool is_blank(const std::string& text) { return text.find_first_not_of(" \t") == std::string::npos; }
 
 struct Unknown {
@@ -387,7 +390,7 @@ Options TomlTable::options(const std::vector<KeySchema>& schema) const {
     }
     switch (key.type) {
       case KeyType::Number: {
-        const double value = *number(key.key, stem.ends_with("sigma") ? kNotNegative : NumberLimits{});
+        const double value = *number(key.key, is_size(stem) ? kNotNegative : NumberLimits{});
         check_plausible(key, value / factor);
         read.set(stem, value);
         break;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "volcal/identify/text/nearest_name.h"
@@ -11,6 +13,8 @@
 
 namespace volcal {
 namespace {
+
+constexpr double kDegreePerRadian = 180.0 / std::numbers::pi;
 
 /// "direction_x" as it stands in a TOML text.
 std::string quoted(const std::string& name) {
@@ -73,6 +77,43 @@ std::string moves_too_fast(const Finding& finding) {
                                  finding.number("speed").si);
 }
 
+/// "c_deg reversed", "b_deg in radians"
+std::string taken_otherwise(const std::string& column, double factor) {
+  const bool radians = std::abs(factor) > 1.0;
+  return column + (radians ? " in radians" : "") +
+         (factor < 0.0 ? radians ? " and reversed" : " reversed" : "");
+}
+
+std::string angles_misread(const Finding& finding) {
+  const std::vector<std::string> columns = finding.texts("columns");
+  const std::vector<FindingNumber> factors = finding.numbers("factors");
+  if (columns.size() != factors.size()) throw std::invalid_argument("columns without their factors");
+  std::vector<std::string> taken, entries;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    taken.push_back(taken_otherwise(columns[i], factors[i].si));
+    entries.push_back(fmt::format("{} = {:.12g}", columns[i], factors[i].si));
+  }
+  return in_setup(finding) +
+         fmt::format(
+             "its positions miss what the instrument allows by {:.1f} mm, with {} by {:.1f} mm: if so add "
+             "scale = {{ {} }}",
+             finding.number("miss").in_unit(), join_names(taken), finding.number("better").in_unit(),
+             join_names(entries));
+}
+
+std::string angles_in_radians(const Finding& finding) {
+  const std::vector<std::string> columns = finding.texts("columns");
+  std::vector<std::string> entries;
+  for (const std::string& column : columns)
+    entries.push_back(fmt::format("{} = {:.12g}", column, kDegreePerRadian));
+  return in_setup(finding) +
+         fmt::format(
+             "{} {} whole degrees if {} in radians, and no round numbers of degrees: if so add scale = "
+             "{{ {} }}",
+             join_names(columns), columns.size() == 1 ? "holds" : "hold",
+             columns.size() == 1 ? "it is" : "they are", join_names(entries));
+}
+
 std::string duplicated(const Finding& finding) {
   return fmt::format("setups \"{}\" and \"{}\" hold the same readings: they count twice; remove one of them",
                      finding.text("first_setup"), finding.text("setup"));
@@ -101,6 +142,8 @@ std::span<const SentenceMaker> campaign_sentences() {
       {FindingCode::ReadingsAgainstDirection, against_direction},
       {FindingCode::ReadingsTimesFarApart, times_far_apart},
       {FindingCode::ReadingsMovesTooFast, moves_too_fast},
+      {FindingCode::ReadingsAnglesMisread, angles_misread},
+      {FindingCode::ReadingsAnglesInRadians, angles_in_radians},
       {FindingCode::ReadingsDuplicated, duplicated},
       {FindingCode::ReadingsDirectionsDerived, directions_derived},
       {FindingCode::ReadingsLeftOut, left_out},

@@ -36,7 +36,12 @@ std::string factor_in_words(double gain) {
 }
 
 std::string none_separates(const Finding& finding) {
-  return "Nothing on the menu tells " + both_effects(finding) + ": they predict nearly the same readings.";
+  const std::string nothing = "Nothing on the menu tells " + both_effects(finding);
+  if (!finding.has("difference")) return nothing + ": they predict nearly the same readings.";
+  return nothing + fmt::format(
+                       " in a way that is worth it, and it does not matter: in the measured volume "
+                       "predictions differ by at most {:.2g} um (U {:.2g} um).",
+                       finding.number("difference").in_unit(), finding.number("U").in_unit());
 }
 
 std::string separates(const Finding& finding) {
@@ -80,6 +85,15 @@ std::string setup_more(const Finding& finding) {
                      point_in_words(finding.numbers("new_place")), tool);
 }
 
+std::string effects_known(const Finding& finding) {
+  const std::string known = "The plan takes as known, as the model states it: " +
+                            fmt::format("{}", fmt::join(finding.texts("effects"), "; ")) + ".";
+  if (!finding.has("columns")) return known + " It belongs to setups of the campaign in which it was found.";
+  return known + " Positions are planned, not conditions; where readings record " +
+         fmt::format("{}", fmt::join(finding.texts("columns"), ", ")) +
+         " and that changes, a fit identifies it anew.";
+}
+
 }  // namespace
 
 std::span<const SentenceMaker> measurement_sentences() {
@@ -88,6 +102,7 @@ std::span<const SentenceMaker> measurement_sentences() {
       {FindingCode::MeasurementSeparates, separates},
       {FindingCode::MeasurementShows, shows},
       {FindingCode::PlanSetupMore, setup_more},
+      {FindingCode::PlanEffectsKnown, effects_known},
   });
   return kSentences;
 }

@@ -26,6 +26,11 @@ Explanation tools_on_one_axis(const Finding& finding) {
 
 Explanation no_lever_arm(const Finding& finding) {
   const std::string& about = finding.text("about");
+  if (finding.has("table"))
+    return {
+        "no reading stands to the side of the axis of " + finding.text("table") + ", across " + about,
+        "measure at places on the table 100 mm or more from that axis, or with an angle instrument about " +
+            about};
   return {"no reading has a lever arm about " + about,
           "add setups with another tool offset, or an angle instrument about " + about};
 }
@@ -39,8 +44,25 @@ Explanation no_reading_changes(const Finding& finding) {
           "add readings that are sensitive to it, or switch it off in the model" + off};
 }
 
+/// Of a function with more periods a turn than the places of its axis tell.
+Explanation few_places(const Finding& finding) {
+  const std::string& axis = finding.text("axis");
+  const std::int64_t told = finding.count("told"), harmonics = finding.count("harmonics");
+  const bool is_regular = finding.has("spacing");
+  const std::string apart =
+      is_regular ? fmt::format(", on a grid of {:.4g} deg", finding.number("spacing").in_unit()) : "";
+  return {
+      fmt::format("the readings stand at {} different positions of axis {}{}; nothing there tells waves of "
+                  "more than {} a turn from longer ones, and its function has up to {}",
+                  finding.count("positions"), axis, apart, told, harmonics),
+      fmt::format("add positions of axis {}{}, {} or more in all, or give its function {}", axis,
+                  is_regular ? " off that grid" : "", 2 * harmonics + 1,
+                  told > 0 ? fmt::format("degree = {}", told) : "the basis \"zero\"")};
+}
+
 Explanation few_positions(const Finding& finding) {
   const std::string& axis = finding.text("axis");
+  if (finding.has("told") && finding.count("told") < finding.count("harmonics")) return few_places(finding);
   return {"the readings stand at too few positions of axis " + axis + " to tell its course between them",
           "add positions along axis " + axis};
 }
@@ -62,6 +84,15 @@ std::string remedy_in_words(const std::string& remedy, const Finding& finding) {
     return fmt::format("move {} while {} stands, at several positions of {}: they move together only",
                        finding.text("moving"), finding.text("standing"), finding.text("standing"));
   if (remedy == "stations") return "measure from more stations (four, well apart)";
+  if (remedy == "second-tool" && finding.has("turning"))
+    return fmt::format(
+        "turn {} with a second tool offset, sideways and of another length: other tools are in use where it "
+        "stands still",
+        finding.text("turning"));
+  if (remedy == "mandrel" && finding.has("turning"))
+    return fmt::format(
+        "turn {} with a mandrel whose tip lies 60 mm or more to the side of the spindle's axis",
+        finding.text("turning"));
   if (remedy == "second-tool") return "repeat with a second tool offset, sideways and of another length";
   if (remedy == "third-tool") {
     return fmt::format(

@@ -18,6 +18,8 @@ constexpr auto kFindingCodes = [] {
       {ReadingsAgainstDirection, "readings.against-direction", Severity::Warning},
       {ReadingsTimesFarApart, "readings.times-far-apart", Severity::Warning},
       {ReadingsMovesTooFast, "readings.moves-too-fast", Severity::Warning},
+      {ReadingsAnglesMisread, "readings.angles-misread", Severity::Warning},
+      {ReadingsAnglesInRadians, "readings.angles-in-radians", Severity::Warning},
       {ReadingsDuplicated, "readings.duplicated", Severity::Warning},
       {ReadingsDirectionsDerived, "readings.directions-derived", Severity::Note},
       {ReadingsLeftOut, "readings.left-out", Severity::Note},
@@ -69,6 +71,7 @@ constexpr auto kFindingCodes = [] {
       {MeasurementSeparates, "measurement.separates", Severity::Note},
       {MeasurementShows, "measurement.shows", Severity::Note},
       {PlanSetupMore, "plan.setup-more", Severity::Note},
+      {PlanEffectsKnown, "plan.effects-known", Severity::Note},
       {StandardsRemovedReadingsUsed, "standards.removed-readings-used", Severity::Note},
       {StandardsLinesOwnZero, "standards.lines-own-zero", Severity::Note},
       {StandardsTargetsSpread, "standards.targets-spread", Severity::Note},
@@ -86,10 +89,13 @@ constexpr auto kFindingCodes = [] {
       {NoTestBeamAcross, "standards.no-test.beam-across", Severity::Note},
       {NoTestComponentsMissing, "standards.no-test.components-missing", Severity::Note},
       {ErrorsHeldBeyondReadings, "errors.held-beyond-readings", Severity::Warning},
+      {ErrorsFadedBeyondReadings, "errors.faded-beyond-readings", Severity::Warning},
+      {ConditionBeyondReadings, "errors.condition-beyond-readings", Severity::Warning},
       {EffectInNoTable, "effect.in-no-table", Severity::Warning},
       {RotaryErrorsInNoTable, "errors.rotary-in-no-table", Severity::Warning},
       {RotaryErrorsPartlyInTables, "errors.rotary-partly-in-tables", Severity::Warning},
       {RotaryErrorsNotInModel, "errors.rotary-not-in-model", Severity::Warning},
+      {RotaryHarmonicsHidden, "errors.rotary-harmonics-hidden", Severity::Note},
   });
 }();
 static_assert(kFindingCodes.size() == static_cast<std::size_t>(FindingCode::End), "every code has one name");

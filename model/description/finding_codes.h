@@ -14,6 +14,8 @@ enum class FindingCode : std::uint8_t {
   ReadingsAgainstDirection,
   ReadingsTimesFarApart,
   ReadingsMovesTooFast,
+  ReadingsAnglesMisread,
+  ReadingsAnglesInRadians,
   ReadingsDuplicated,
   ReadingsDirectionsDerived,
   ReadingsLeftOut,
@@ -65,6 +67,7 @@ enum class FindingCode : std::uint8_t {
   MeasurementSeparates,
   MeasurementShows,
   PlanSetupMore,
+  PlanEffectsKnown,
   StandardsRemovedReadingsUsed,
   StandardsLinesOwnZero,
   StandardsTargetsSpread,
@@ -82,10 +85,13 @@ enum class FindingCode : std::uint8_t {
   NoTestBeamAcross,
   NoTestComponentsMissing,
   ErrorsHeldBeyondReadings,
+  ErrorsFadedBeyondReadings,
+  ConditionBeyondReadings,
   EffectInNoTable,
   RotaryErrorsInNoTable,
   RotaryErrorsPartlyInTables,
   RotaryErrorsNotInModel,
+  RotaryHarmonicsHidden,
   End,  ///< none: how many there are
 };
 

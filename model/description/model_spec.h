@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "volcal/model/description/recorded_conditions.h"
 #include "volcal/model/description/schema.h"
 #include "volcal/model/description/symbols.h"
 
@@ -25,6 +26,9 @@ struct FunctionSpec {
   int intervals = 0;                 ///< for IntervalCount
   std::vector<double> breakpoints;   ///< for Explicit: m or rad, ascending, ends included
   std::vector<double> coefficients;  ///< an identified function: m or rad, one per basis function; else empty
+  /// Identified with knots or harmonics that were chosen from the readings and smoothed: where it is
+  /// identified anew, they are chosen anew.
+  bool smoothed = false;
 };
 
 /// How large errors may be before any reading is seen, standard deviations. They hold what the readings do
@@ -53,6 +57,8 @@ struct ModelSpec {
   /// Positions with readings that stated errors follow from, m or rad, first and last: beyond them errors
   /// keep their last value. An axis without is known over its whole travel.
   std::map<AxisName, std::pair<double, double>> measured;
+  /// Under which stated errors were measured; what is not recorded is not known.
+  RecordedConditions conditions;
 
   /// The nearest position that was measured.
   double held(AxisName axis, double position) const {

@@ -120,6 +120,10 @@ class Effect {
   /// Set where the amplitudes are the coefficients of one function of its drivers: a prior ties them together
   /// (identify/solve/priors/surface_prior.h), and none of them means anything alone.
   virtual const TensorBasis* surface() const { return nullptr; }
+  /// What drivers() has lost where a function of recorded variables fades out beyond the readings it was
+  /// drawn from: drivers with its last value held, less drivers(). Empty where none of the readings is
+  /// beyond.
+  virtual Eigen::MatrixXd faded_drivers(const SetupView& /*view*/) const { return {}; }
   /// Whether its driver is an expression of what EffectName::driver lists: it changes where any of that does.
   virtual bool changes_with_any_driver() const { return false; }
   /// Readings of a setup on which the effect acts, but whose driver was not recorded.

@@ -1,5 +1,6 @@
 #include "volcal/model/effects/registry.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "volcal/model/description/registration.h"
@@ -73,6 +74,17 @@ Registration<EffectKind>& registered_effects() {
 std::span<const EffectKind* const> effect_kinds() { return registered_effects().all(); }
 
 const EffectKind* find_effect(std::string_view kind) { return registered_effects().find(kind); }
+
+double largest_amplitude(const Effect& effect, const EffectAmplitude& amplitude) {
+  constexpr double kOfErrorMotions = 1e5;
+  double largest = kOfErrorMotions;
+  if (const EffectKind* kind = find_effect(effect.name().kind)) {
+    const auto& keys = kind->schema().keys;
+    const auto key = std::ranges::find(keys, amplitude.key, &KeySchema::key);
+    if (key != keys.end()) largest = key->plausible_max;
+  }
+  return largest * amplitude.si_per_unit();
+}
 
 const EffectKind& register_effect(std::unique_ptr<const EffectKind> kind) {
   return registered_effects().add(std::move(kind));

@@ -30,6 +30,12 @@ class TensorBasis {
   /// All basis functions at a place, one value per variable. Beyond a range the last value is held and fades
   /// to zero over the length of one piece.
   Eigen::VectorXd row(std::span<const double> place) const;
+  /// The same with the last value held for good.
+  Eigen::VectorXd held_row(std::span<const double> place) const;
+  /// Whether a value is outside its range by more than rounding.
+  bool is_beyond(std::span<const double> place) const;
+  /// Of the function with these coefficients over its range.
+  double root_mean_square(const Eigen::VectorXd& coefficients) const;
   /// Where the functions of one variable are centred (Greville abscissae), 0..1 of its range.
   Eigen::VectorXd nodes(std::size_t side) const;
   /// The functions of one variable at equally spaced places of its range, places x functions.

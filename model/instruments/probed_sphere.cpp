@@ -31,7 +31,7 @@ ColumnSchema coordinate(const std::string& column, const std::string& help) {
 }
 
 ColumnSchema normal_component(const std::string& column) {
-  return {.column = column, .help = "outward unit normal at the contact", .plausible_max = 1.001};
+  return {.column = column, .help = "outward unit normal at the contact"};
 }
 
 const InstrumentSchema kProbedSphereSchema = {
@@ -166,7 +166,11 @@ class ProbedContacts final : public EquationBase<ProbedContacts> {
       if (std::abs(normal.norm() - 1.0) > kUnitNormal) {
         throw InputError({setup.data, static_cast<int>(setup.readings.source_line[row])},
                          "n_x, n_y, n_z have the length " + std::to_string(normal.norm()),
-                         "give the outward unit normal of the contact");
+                         normal.norm() > 0.0
+                             ? "a normal has the length 1: divide n_x, n_y and n_z of every contact by their "
+                               "length, the root of the sum of their squares"
+                             : "give the direction out of the sphere at the contact, as n_x = 1, n_y = 0, "
+                               "n_z = 0 on its +X side");
       }
       normal_w_.emplace_back(frames[row].rotation.transpose() * normal);
       shift_.push_back(normal_w_.back().dot(frames[row].origin_w));

@@ -17,6 +17,7 @@
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/criticism/diagnosis_text.h"
 #include "volcal/identify/report/values/volume_causes.h"
+#include "volcal/identify/session/diagnosed_campaign.h"
 #include "volcal/identify/text/today.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/python/model.h"
@@ -56,7 +57,7 @@ DiagnosisOf diagnose_campaign(const std::shared_ptr<Campaign>& campaign, const M
   options.progress = progress_to(progress);
   return without_lock([&] {
     DiagnosisOf of{{}, campaign, model != nullptr ? model->spec : ModelSpec{}};
-    DiagnosedModel diagnosed = diagnose_model(*campaign, of.model, options);
+    DiagnosedModel diagnosed = diagnosed_campaign(*campaign, of.model, options);
     of.diagnosis = std::move(diagnosed.diagnosis);
     of.fit = std::make_shared<const FitResult>(std::move(diagnosed.fit));
     return of;

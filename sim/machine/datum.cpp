@@ -60,8 +60,9 @@ double uniform_mean(const ErrorFunction& function, double low, double high) {
 TruthInDatum::TruthInDatum(const TruthMachine& truth) : TruthInDatum(truth, truth.machine().datum) {}
 
 TruthInDatum::TruthInDatum(const TruthMachine& truth, Datum datum) : truth_(truth), datum_(datum) {
-  for (const AxisName name : kLinearAxes) find_slopes(truth.machine().axis(name));
-  for (const AxisName name : truth.machine().parallel_axes()) find_slopes(truth.machine().axis(name));
+  for (const Axis& axis : truth.machine().axes) {
+    if (!is_rotary(axis.name)) find_slopes(axis);
+  }
   for (const Axis& axis : truth.machine().axes) {
     for (const Component component : kAllComponents) {
       const ErrorSymbol symbol{component, axis.name};

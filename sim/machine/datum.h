@@ -39,7 +39,7 @@ double uniform_mean(const ErrorFunction& function, double low, double high);
 
 class TruthInDatum {
  public:
-  /// The machine's own datum, or another. The three linear axes must be present.
+  /// The machine's own datum, or another. Both axes of the datum must be present.
   explicit TruthInDatum(const TruthMachine& truth);
   TruthInDatum(const TruthMachine& truth, Datum datum);
 

@@ -170,8 +170,9 @@ TruthMachine assemble(const Machine& machine, const Draft& draft, double scale) 
   return truth;
 }
 
-bool has_linear_axes(const Machine& machine) {
-  return machine.has_axis(AxisName::X) && machine.has_axis(AxisName::Y) && machine.has_axis(AxisName::Z);
+/// Two axes or more give a frame and an area in which errors are judged.
+bool has_frame(const Machine& machine) {
+  return machine.has_axis(machine.datum.primary) && machine.has_axis(machine.datum.secondary);
 }
 
 }  // namespace
@@ -211,8 +212,9 @@ TruthMachine random_truth(const Machine& machine, std::uint64_t seed, const Rand
   }
   RandomStream random(seed, "truth sizes");
   double scale = 1.0;
-  if (has_linear_axes(machine)) {
+  if (has_frame(machine)) {
     for (const LocationSymbol& symbol : machine.datum.squareness()) {
+      if (!machine.has_axis(symbol.axis)) continue;
       const double size = random.uniform(kSquarenessMin, kSquarenessMax) * options.squareness_scale;
       draft.locations.emplace_back(symbol, random.sign() * size);
     }

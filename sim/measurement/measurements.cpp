@@ -1,5 +1,7 @@
 #include "volcal/sim/measurement/measurements.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "volcal/model/description/units.h"
@@ -24,6 +26,10 @@ struct Planner {
   std::vector<SetupPlan> operator()(const RTest& s) const { return plan_r_test(s, context); }
   std::vector<SetupPlan> operator()(const ProbedSphere& s) const { return plan_probed_sphere(s, context); }
   std::vector<SetupPlan> operator()(const BallBarPoses& s) const { return plan_ball_bar_poses(s, context); }
+  std::vector<SetupPlan> operator()(const AxisOfRotation& s) const {
+    return plan_axis_of_rotation(s, context);
+  }
+  std::vector<SetupPlan> operator()(const DriftAtRest& s) const { return plan_drift_at_rest(s, context); }
 };
 
 }  // namespace
@@ -42,6 +48,30 @@ void PlanContext::fail(const std::string& problem, const std::string& remedy) co
   throw InputError(place, measurement + problem, remedy);
 }
 
+std::vector<AxisName> PlanContext::linear_axes() const {
+  std::vector<AxisName> axes;
+  for (const AxisName axis : kLinearAxes) {
+    if (machine.has_axis(axis)) axes.push_back(axis);
+  }
+  return axes;
+}
+
+void PlanContext::require_axis(AxisName axis) const {
+  if (machine.has_axis(axis)) return;
+  fail(std::string("the machine has no axis ") + letter_of(axis), "name axes of its structure");
+}
+
+std::vector<std::string> PlanContext::planes_of(const std::vector<std::string>& named) const {
+  if (!named.empty()) return named;
+  std::vector<std::string> planes;
+  for (const char* name : {"XY", "YZ", "ZX"}) {
+    const std::string plane = name;
+    if (std::ranges::all_of(plane, [&](char c) { return machine.has_axis(*axis_from_letter(c)); }))
+      planes.push_back(plane);
+  }
+  return planes;
+}
+
 void PlanContext::require_at_least(int value, int least, const std::string& what) const {
   if (value < least) {
     fail(what + " is " + std::to_string(value), "it must be " + std::to_string(least) + " or more");
@@ -54,6 +84,8 @@ Plane parse_plane(const std::string& name, const PlanContext& context) {
     const auto second = axis_from_letter(name[1]);
     if (first && second && direction_of(*first) != direction_of(*second) && !is_rotary(*first) &&
         !is_rotary(*second)) {
+      context.require_axis(*first);
+      context.require_axis(*second);
       return {*first, *second};
     }
   }
@@ -61,10 +93,13 @@ Plane parse_plane(const std::string& name, const PlanContext& context) {
 }
 
 LineEnds axis_line(const Machine& machine, AxisName axis, const Eigen::Vector3d& at) {
-  if (is_parallel(axis)) {
+  if (is_parallel(axis) || is_rotary(axis)) {
     LineEnds ends{at_fraction(machine, at), at_fraction(machine, at)};
-    ends.start.position[index_of(axis)] = machine.axis(axis).travel_min;
-    ends.end.position[index_of(axis)] = machine.axis(axis).travel_max;
+    const Axis& own = machine.axis(axis);
+    const std::array<double, 2> range =
+        is_rotary(axis) ? rotary_range({}, own) : std::array{own.travel_min, own.travel_max};
+    ends.start.position[index_of(axis)] = range[0];
+    ends.end.position[index_of(axis)] = range[1];
     return ends;
   }
   Eigen::Vector3d low = at;
@@ -84,11 +119,9 @@ std::vector<SetupPlan> plan_setups(const Measurement& measurement, const Machine
                                    std::uint64_t seed) {
   const PlanContext context{machine, measurement.name.empty() ? "" : measurement.name + "_", seed,
                             measurement.place};
-  for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
-    if (machine.has_axis(axis)) continue;
-    context.fail(std::string("the machine has no axis ") + letter_of(axis),
-                 "simulated measurements need the axes X, Y and Z");
-  }
+  if (context.linear_axes().size() < 2)
+    context.fail("the machine has fewer than two of the axes X, Y and Z",
+                 "simulate a machine with two linear axes or more: one axis alone has no frame");
   std::vector<SetupPlan> plans = std::visit(Planner{context}, measurement.settings);
   for (SetupPlan& plan : plans) {
     if (plan.unseen.empty()) {

@@ -67,9 +67,9 @@ struct BallBarCircles {
     std::vector<CommandedPoint> points;  ///< on a sphere about the centre, within the bar's stroke
     SourcePlace place = {};              ///< of the study file, for messages
   };
-  std::vector<Run> runs;  ///< in place of planes
-  std::vector<std::string> planes = {"XY", "YZ", "ZX"};
-  std::string tool;  ///< empty = the first
+  std::vector<Run> runs;            ///< in place of planes
+  std::vector<std::string> planes;  ///< empty = XY, YZ, ZX, of which the machine has both axes
+  std::string tool;                 ///< empty = the first
   Eigen::Vector3d at{0.5, 0.5, 0.5};
   double radius = 0.0;  ///< 0 = 150 mm, or 45 % of the shortest travel if that is less
   int points_per_turn = 180;
@@ -100,7 +100,7 @@ struct Diagonals {
 
 /// ISO 230-2 positioning along one axis each, bidirectional.
 struct AxisLines {
-  std::vector<AxisName> axes = {AxisName::X, AxisName::Y, AxisName::Z};
+  std::vector<AxisName> axes;  ///< empty = X, Y, Z, of which the machine has them
   std::string tool;
   Eigen::Vector3d at{0.5, 0.5, 0.5};
   int points = 11;
@@ -113,7 +113,7 @@ struct AxisLines {
 
 /// Straightness of each axis in both transverse directions against a straightedge or beam, bidirectional.
 struct StraightnessLines {
-  std::vector<AxisName> axes = {AxisName::X, AxisName::Y, AxisName::Z};
+  std::vector<AxisName> axes;  ///< empty = X, Y, Z, of which the machine has them
   std::string tool;
   Eigen::Vector3d at{0.5, 0.5, 0.5};
   int points = 21;
@@ -127,7 +127,7 @@ struct StraightnessLines {
 /// A square in a plane: straightness of both axes against the arms of one artefact, whose rotation they
 /// share.
 struct Squares {
-  std::vector<std::string> planes = {"XY", "YZ", "ZX"};
+  std::vector<std::string> planes;  ///< empty = XY, YZ, ZX, of which the machine has both axes
   std::string tool;
   Eigen::Vector3d at{0.5, 0.5, 0.5};
   int points = 21;
@@ -138,9 +138,11 @@ struct Squares {
   double seconds_per_reading = 2.0;
 };
 
-/// Angles along each axis, about x, y and z: angular interferometer ("relative") or level ("tool", "table").
+/// Angles along each linear axis, about x, y and z: angular interferometer ("relative") or level ("tool",
+/// "table"). Of a rotary axis the angle about itself, actual less commanded, over its travel, one turn at
+/// most (ISO 230-2).
 struct AngleLines {
-  std::vector<AxisName> axes = {AxisName::X, AxisName::Y, AxisName::Z};
+  std::vector<AxisName> axes;  ///< empty = X, Y, Z, of which the machine has them
   std::string body = "relative";
   std::string tool;
   Eigen::Vector3d at{0.5, 0.5, 0.5};
@@ -149,6 +151,36 @@ struct AngleLines {
   double offset_spread = 10e-6;  ///< rad
   NoiseLevel noise{0.5e-6, 0.0, 0.0, 0.0};
   double seconds_per_reading = 2.0;
+};
+
+/// Axis of rotation (ISO 230-7): displacements of a sphere on the line of a rotary axis, which turns alone,
+/// a turn or its travel a run; one setup per axis, tool and height.
+struct AxisOfRotation {
+  std::vector<AxisName> axes;      ///< empty = every rotary axis
+  std::vector<std::string> tools;  ///< empty = the first
+  /// Of the sphere along the line, from the axis' centre; empty = at the centre, or, where no linear axis
+  /// goes along the line, wherever the tool's length has it.
+  std::vector<double> heights;
+  std::string frame = "workpiece";  ///< axes of the readings; or "tool", "machine"
+  Eigen::Vector3d at{0.5, 0.5, 0.5};
+  int points = 36;  ///< of a run
+  int runs = 2;
+  bool bidirectional = false;
+  double offset_spread = 5e-6;  ///< of the sphere from the line, per component
+  NoiseLevel noise{0.2e-6, 0.0, 0.0, 0.3e-6};
+  double seconds_per_reading = 2.0;
+};
+
+/// Drift at rest (ISO 230-3): nothing moves, and displacements of the spindle against spheres on the table
+/// are read over time. One setup per tool, all read at the same times: tools of different length are places
+/// along one mandrel.
+struct DriftAtRest {
+  std::vector<std::string> tools;  ///< empty = the first
+  Eigen::Vector3d at{0.5, 0.5, 0.5};
+  double duration = 4.0 * 3600.0;  ///< s
+  double seconds_per_reading = 300.0;
+  double offset_spread = 20e-6;  ///< of the readings' zeros, per component
+  NoiseLevel noise{0.1e-6, 0.0, 0.0, 0.0};
 };
 
 /// Error vectors on a regular grid over the travel (grid plate, probed artefact).
@@ -223,8 +255,9 @@ struct BallBarPoses {
   BallBarCircles bar;             ///< its errors and noise
 };
 
-using MeasurementSettings = std::variant<Tracking, BallBarCircles, Diagonals, AxisLines, StraightnessLines,
-                                         Squares, AngleLines, PointGrid, RTest, ProbedSphere, BallBarPoses>;
+using MeasurementSettings =
+    std::variant<Tracking, BallBarCircles, Diagonals, AxisLines, StraightnessLines, Squares, AngleLines,
+                 PointGrid, RTest, ProbedSphere, BallBarPoses, AxisOfRotation, DriftAtRest>;
 
 struct Measurement {
   std::string name;  ///< prefix of its setups' names; empty = by kind
@@ -234,8 +267,8 @@ struct Measurement {
 };
 
 /// Setups of a measurement, each with as many unseen positions as it has points; nuisance truths are drawn
-/// from the stream of (seed, measurement name). The machine needs the axes X, Y and Z. Throws InputError for
-/// a tool, station, plane or number that makes no sense.
+/// from the stream of (seed, measurement name). The machine needs two of the axes X, Y and Z. Throws
+/// InputError for a tool, station, plane or number that makes no sense.
 std::vector<SetupPlan> plan_setups(const Measurement& measurement, const Machine& machine,
                                    std::uint64_t seed);
 

@@ -129,8 +129,16 @@ std::vector<CommandedPoint> circular_path(const CommandedPoint& centre, AxisName
   return path;
 }
 
-std::vector<CommandedPoint> jittered_grid_path(const Machine& machine, const Eigen::Vector3i& count,
+Eigen::Vector3i counts_of_axes(const Machine& machine, Eigen::Vector3i counts) {
+  for (const AxisName axis : kLinearAxes) {
+    if (!machine.has_axis(axis)) counts[direction_of(axis)] = 1;
+  }
+  return counts;
+}
+
+std::vector<CommandedPoint> jittered_grid_path(const Machine& machine, const Eigen::Vector3i& per_axis,
                                                double jitter, RandomStream& random) {
+  const Eigen::Vector3i count = counts_of_axes(machine, per_axis);
   std::vector<CommandedPoint> forward;
   CommandedPoint previous = at_fraction(machine, Eigen::Vector3d::Zero());
   std::int32_t line = 0;
@@ -142,6 +150,7 @@ std::vector<CommandedPoint> jittered_grid_path(const Machine& machine, const Eig
         CommandedPoint point = previous;
         const Eigen::Vector3i index{i, j, k};
         for (const AxisName name : kLinearAxes) {
+          if (!machine.has_axis(name)) continue;
           const Axis& axis = machine.axis(name);
           const int d = direction_of(name);
           const double step = axis.travel() / (count[d] - 1);

@@ -35,10 +35,13 @@ std::vector<CommandedPoint> step_path(const CommandedPoint& start, const Command
 std::vector<CommandedPoint> circular_path(const CommandedPoint& centre, AxisName first, AxisName second,
                                           double radius, int points_per_turn);
 
+/// Positions of a grid along X, Y, Z; one along an axis that the machine lacks.
+Eigen::Vector3i counts_of_axes(const Machine& machine, Eigen::Vector3i counts);
+
 /// Boustrophedon grid over the whole travel, each position moved by up to `jitter` of a grid step and clipped
 /// to the travel, in whole micrometres, then the same positions in reverse order approached from the other
 /// side. Each row is a line.
-std::vector<CommandedPoint> jittered_grid_path(const Machine& machine, const Eigen::Vector3i& count,
+std::vector<CommandedPoint> jittered_grid_path(const Machine& machine, const Eigen::Vector3i& per_axis,
                                                double jitter, RandomStream& random);
 
 /// Positions on the way from each point of a line to the next, at random shares of it; for the last point of

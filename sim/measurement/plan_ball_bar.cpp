@@ -195,7 +195,7 @@ std::vector<SetupPlan> plan_ball_bar(const BallBarCircles& settings, const PlanC
   std::vector<SetupPlan> plans;
   for (const BallBarCircles::Run& run : settings.runs) plans.push_back(planner.as_given(run));
   if (!plans.empty()) return plans;
-  for (const std::string& plane : settings.planes) plans.push_back(planner.circle(plane));
+  for (const std::string& plane : context.planes_of(settings.planes)) plans.push_back(planner.circle(plane));
   return plans;
 }
 

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <array>
 
 #include "volcal/sim/machine/transforms.h"
 #include "volcal/sim/measurement/paths.h"
 #include "volcal/sim/measurement/plan_tools.h"
+#include "volcal/sim/measurement/rotary_poses.h"
 
 namespace volcal::sim {
 namespace {
@@ -28,6 +30,11 @@ void check_line(const Settings& settings, const PlanContext& context) {
 void require_linear_axis(AxisName axis, const PlanContext& context) {
   if (is_rotary(axis))
     context.fail(std::string("axis ") + letter_of(axis) + " is rotary", "use X, Y or Z, or U, V, W");
+  context.require_axis(axis);
+}
+
+std::vector<AxisName> axes_of(const std::vector<AxisName>& named, const PlanContext& context) {
+  return named.empty() ? context.linear_axes() : named;
 }
 
 /// Start and end of a diagonal: each bit of `corner` says from which end its axis starts.
@@ -87,12 +94,31 @@ SetupPlan plan_straightness_line(const std::string& name, AxisName axis, AxisNam
   return plan;
 }
 
+/// The angle of a rotary axis about itself, between table and tool (ISO 230-2).
+SetupPlan plan_rotary_angle(AxisName axis, const AngleLines& settings, const PlanContext& context) {
+  context.require_axis(axis);
+  if (settings.body != "relative")
+    context.fail(std::string("the angle of the rotary axis ") + letter_of(axis) + " is asked for of one body",
+                 "leave body out: it is read between table and tool");
+  SetupPlan plan = new_plan(std::string("angle_") + letter_of(axis), "angle", settings, context);
+  const LineEnds ends = axis_line(context.machine, axis, settings.at);
+  plan.points = straight_path(ends.start, ends.end, settings.points, settings.runs, true);
+  plan.options.set("axis", rotary_direction_w(TruthMachine(context.machine), ends.start, axis));
+  plan.options.set("body", settings.body);
+  RandomStream random(context.seed, "setup " + plan.name);
+  plan.truth.offset = settings.offset_spread * random.normal();
+  return plan;
+}
+
 }  // namespace
 
 std::vector<SetupPlan> plan_diagonals(const Diagonals& settings, const PlanContext& context) {
   check_line(settings, context);
   std::vector<SetupPlan> plans;
   if (settings.kind == Diagonals::Kind::Body) {
+    if (context.linear_axes().size() < 3)
+      context.fail("a machine of two linear axes has no body diagonals",
+                   "measure the diagonals of its plane: diagonals = \"face\"");
     // From the four corners at the low end of Z; the other four are the same diagonals backwards.
     for (unsigned corner = 0; corner < 4; ++corner) {
       plans.push_back(plan_diagonal(settings, context, "body", {true, true, true}, corner));
@@ -103,6 +129,10 @@ std::vector<SetupPlan> plan_diagonals(const Diagonals& settings, const PlanConte
       {{true, true, false}, {false, true, true}, {true, false, true}}};
   const std::array<std::string, 3> names = {"face_XY", "face_YZ", "face_XZ"};
   for (std::size_t i = 0; i < planes.size(); ++i) {
+    const auto stands = [&](AxisName axis) {
+      return planes[i][index_of(axis)] && !context.machine.has_axis(axis);
+    };
+    if (std::ranges::any_of(kLinearAxes, stands)) continue;
     const unsigned lowest_axis = planes[i][0] ? 1U : 2U;
     for (const unsigned corner : {0U, lowest_axis}) {
       plans.push_back(plan_diagonal(settings, context, names[i], planes[i], corner));
@@ -114,7 +144,7 @@ std::vector<SetupPlan> plan_diagonals(const Diagonals& settings, const PlanConte
 std::vector<SetupPlan> plan_axis_lines(const AxisLines& settings, const PlanContext& context) {
   check_line(settings, context);
   std::vector<SetupPlan> plans;
-  for (const AxisName axis : settings.axes) {
+  for (const AxisName axis : axes_of(settings.axes, context)) {
     require_linear_axis(axis, context);
     SetupPlan plan = new_plan(std::string("line_") + letter_of(axis), "displacement", settings, context);
     const LineEnds ends = axis_line(context.machine, axis, settings.at);
@@ -136,7 +166,7 @@ std::vector<SetupPlan> plan_axis_lines(const AxisLines& settings, const PlanCont
 std::vector<SetupPlan> plan_straightness(const StraightnessLines& settings, const PlanContext& context) {
   check_line(settings, context);
   std::vector<SetupPlan> plans;
-  for (const AxisName axis : settings.axes) {
+  for (const AxisName axis : axes_of(settings.axes, context)) {
     require_linear_axis(axis, context);
     for (const AxisName across : kLinearAxes) {
       if (across == main_axis_of(axis)) continue;
@@ -152,7 +182,7 @@ std::vector<SetupPlan> plan_straightness(const StraightnessLines& settings, cons
 std::vector<SetupPlan> plan_squares(const Squares& settings, const PlanContext& context) {
   check_line(settings, context);
   std::vector<SetupPlan> plans;
-  for (const std::string& plane_name : settings.planes) {
+  for (const std::string& plane_name : context.planes_of(settings.planes)) {
     const Plane plane = parse_plane(plane_name, context);
     const std::string square = "square_" + plane_name;
     RandomStream random(context.seed, "artefact " + context.prefix + square);
@@ -173,7 +203,11 @@ std::vector<SetupPlan> plan_angles(const AngleLines& settings, const PlanContext
     context.fail("\"" + settings.body + "\" is not a body", "use relative, tool or table");
   }
   std::vector<SetupPlan> plans;
-  for (const AxisName axis : settings.axes) {
+  for (const AxisName axis : axes_of(settings.axes, context)) {
+    if (is_rotary(axis)) {
+      plans.push_back(plan_rotary_angle(axis, settings, context));
+      continue;
+    }
     require_linear_axis(axis, context);
     const LineEnds ends = axis_line(context.machine, axis, settings.at);
     for (const AxisName about : kLinearAxes) {
@@ -194,13 +228,14 @@ std::vector<SetupPlan> plan_angles(const AngleLines& settings, const PlanContext
 std::vector<SetupPlan> plan_point_grid(const PointGrid& settings, const PlanContext& context) {
   for (const int count : settings.grid) context.require_at_least(count, 2, "grid");
   SetupPlan plan = new_plan("points", kVolumetricPoints, settings, context);
-  for (int k = 0; k < settings.grid.z(); ++k) {
-    for (int j = 0; j < settings.grid.y(); ++j) {
-      for (int i = 0; i < settings.grid.x(); ++i) {
+  const Eigen::Vector3i grid = counts_of_axes(context.machine, settings.grid);
+  for (int k = 0; k < grid.z(); ++k) {
+    for (int j = 0; j < grid.y(); ++j) {
+      for (int i = 0; i < grid.x(); ++i) {
         const Eigen::Vector3d index(i, j, k);
-        const Eigen::Vector3d last = (settings.grid.array() - 1).cast<double>();
+        const Eigen::Vector3d last = (grid.array() - 1).max(1).cast<double>();
         plan.points.push_back(at_fraction(context.machine, index.cwiseQuotient(last)));
-        plan.points.back().line = k * settings.grid.y() + j;
+        plan.points.back().line = k * grid.y() + j;
       }
     }
   }

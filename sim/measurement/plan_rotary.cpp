@@ -39,10 +39,17 @@ std::string listed(const std::string& letters) {
 }
 
 void require_enough(const std::vector<CommandedPoint>& path, const PlanContext& context,
-                    const SetupPlan& plan) {
+                    const SetupPlan& plan, bool all_led_there) {
   const std::string alone = axes_left_alone(context.machine, path, plan.points);
   const std::size_t needed = std::min(kFewestPoses, path.size());
   if (plan.points.size() >= needed && alone.empty()) return;
+  const std::vector<AxisName> follow = context.linear_axes();
+  if (!all_led_there && follow.size() < 3)
+    context.fail(
+        std::string("the tool point of setup ") + plan.name + " does not stay on its sphere by " +
+            letter_of(follow[0]) + " and " + letter_of(follow[1]) + " alone while rotary axes turn",
+        "put the sphere into the plane of both axes and turn about its normal alone, or test one axis "
+        "after another: kind = \"angle-lines\" and \"axis-of-rotation\"");
   std::string problem = "of " + std::to_string(path.size()) + " poses of setup " + plan.name + " " +
                         std::to_string(plan.points.size()) + " are within the travel of " +
                         (plan.left_out_by.empty() ? "X, Y, Z" : listed(plan.left_out_by));
@@ -177,11 +184,13 @@ void follow_poses(const RotaryGrid& grid, const PoseTarget& target, const PlanCo
   RandomStream random(context.seed, "rotary positions of " + plan.name);
   const std::vector<CommandedPoint> path = rotary_path(context.machine, grid, random);
   std::set<char> outside;
+  bool all_led_there = true;
   for (CommandedPoint rotary : path) {
     const Eigen::Vector3d place = target(rotary);
     Follower::Pose pose = follower.at(rotary, place);
     if (!pose.outside.empty()) {
       ++plan.poses_left_out;
+      all_led_there = all_led_there && pose.leads_there;
       outside.insert(pose.outside.begin(), pose.outside.end());
       continue;
     }
@@ -191,7 +200,7 @@ void follow_poses(const RotaryGrid& grid, const PoseTarget& target, const PlanCo
     plan.points.push_back(pose.point);
   }
   plan.left_out_by.assign(outside.begin(), outside.end());
-  require_enough(path, context, plan);
+  require_enough(path, context, plan, all_led_there);
   RandomStream elsewhere(context.seed, "unseen positions of " + plan.name);
   plan.unseen = followed_between(plan, follower, target, elsewhere);
 }
@@ -297,6 +306,9 @@ std::vector<SetupPlan> plan_probed_sphere(const ProbedSphere& settings, const Pl
   if (!settings.poses.runs.empty() && settings.contacts)
     context.fail("runs with their own positions are of centres",
                  "leave the runs or record = \"contacts\" out");
+  if (settings.contacts && context.linear_axes().size() < 3)
+    context.fail("a machine of two linear axes touches a sphere in their plane alone",
+                 "record centres, or measure with kind = \"r-test\"");
   for (const RotaryPoses::Run& run : settings.poses.runs) plans.push_back(planner.given_centres(run));
   if (!plans.empty()) return plans;
   for (const SpherePlace& sphere : settings.poses.spheres) {

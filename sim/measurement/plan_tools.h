@@ -22,6 +22,12 @@ struct PlanContext {
   /// Index of a tool by name, the first when the name is empty; throws InputError.
   std::size_t tool(const std::string& name) const;
   [[noreturn]] void fail(const std::string& problem, const std::string& remedy) const;
+  /// X, Y, Z, of which the machine has them.
+  std::vector<AxisName> linear_axes() const;
+  /// Throws InputError for an axis that the machine lacks.
+  void require_axis(AxisName axis) const;
+  /// The planes named; where none is, XY, YZ, ZX, of which the machine has both axes.
+  std::vector<std::string> planes_of(const std::vector<std::string>& named) const;
   /// Throws InputError unless value >= least.
   void require_at_least(int value, int least, const std::string& what) const;
 };
@@ -33,7 +39,7 @@ struct Plane {
 };
 Plane parse_plane(const std::string& name, const PlanContext& context);
 
-/// Start and end of an axis' travel with the other axes at shares `at` of theirs.
+/// Start and end of an axis' travel, of a rotary one a turn at most, with X, Y, Z at shares `at` of theirs.
 struct LineEnds {
   CommandedPoint start;
   CommandedPoint end;
@@ -70,5 +76,7 @@ std::vector<SetupPlan> plan_point_grid(const PointGrid& settings, const PlanCont
 std::vector<SetupPlan> plan_r_test(const RTest& settings, const PlanContext& context);
 std::vector<SetupPlan> plan_probed_sphere(const ProbedSphere& settings, const PlanContext& context);
 std::vector<SetupPlan> plan_ball_bar_poses(const BallBarPoses& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_axis_of_rotation(const AxisOfRotation& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_drift_at_rest(const DriftAtRest& settings, const PlanContext& context);
 
 }  // namespace volcal::sim

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "volcal/sim/machine/transforms.h"
+
 namespace volcal::sim {
 namespace {
 
@@ -15,9 +17,25 @@ constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 constexpr double kSameAngle = 1e-9;    // rad
 constexpr double kAtTravelEnd = 1e-9;  // m
 constexpr double kLeastDirection =
-    0.02;  // smallest volume that three directions of axes span: 1 = at right angles
+    0.02;                           // smallest volume that three directions of axes span: 1 = at right angles
+constexpr double kAtTarget = 1e-6;  // m, of the tool point where two axes follow
 constexpr int kPositionsOfATurn = 12;
 constexpr int kPositionsOfATilt = 7;
+
+/// Volume that three directions span, of two their area.
+double spanned(const Eigen::Matrix3Xd& directions) {
+  if (directions.cols() == 3) return std::abs(Eigen::Matrix3d(directions).determinant());
+  return std::sqrt((directions.transpose() * directions).eval().determinant());
+}
+
+/// Moves along directions that make up a displacement, in the least-squares sense where there are fewer than
+/// three.
+Eigen::VectorXd moves_along(const Eigen::Matrix3Xd& directions, const Eigen::Vector3d& displacement) {
+  if (directions.cols() == 3) return Eigen::Matrix3d(directions).partialPivLu().solve(displacement);
+  if (directions.cols() == 0) return Eigen::VectorXd(0);
+  const Eigen::MatrixXd normal = directions.transpose() * directions;
+  return normal.partialPivLu().solve(directions.transpose() * displacement);
+}
 
 /// Positions that one axis takes.
 struct RotaryNodes {
@@ -166,40 +184,63 @@ Eigen::Matrix3d axes_of_frame(const TruthMachine& machine, const MachineState& s
   throw std::invalid_argument("\"" + frame + "\" is no frame of readings");
 }
 
-Follower::Follower(const TruthMachine& nominal, Eigen::Vector3d tool_offset)
-    : nominal_(nominal), tool_offset_(std::move(tool_offset)) {}
+Eigen::Vector3d rotary_direction_w(const TruthMachine& nominal, const CommandedPoint& point, AxisName axis) {
+  MachineState state;
+  state.position = point.position;
+  const Eigen::Matrix3d before = nominal.nominal_tool_axes(state);
+  state.position[index_of(axis)] += 0.25 * kWholeTurn;
+  return rotation_vector(nominal.nominal_tool_axes(state) * before.transpose()).normalized();
+}
 
-/// Workpiece directions in which X, Y, Z move the tool point, by columns.
-Eigen::Matrix3d Follower::directions(const CommandedPoint& rotary) const {
+Follower::Follower(const TruthMachine& nominal, Eigen::Vector3d tool_offset)
+    : nominal_(nominal), tool_offset_(std::move(tool_offset)) {
+  for (const AxisName axis : kLinearAxes) {
+    if (nominal.machine().has_axis(axis)) axes_.push_back(axis);
+  }
+}
+
+/// Workpiece directions in which the linear axes move the tool point, by columns.
+Eigen::Matrix3Xd Follower::directions(const CommandedPoint& rotary) const {
   MachineState state;
   state.position = rotary.position;
-  for (const AxisName axis : kLinearAxes) state.position[index_of(axis)] = 0.0;
+  for (const AxisName axis : axes_) state.position[index_of(axis)] = 0.0;
   const Eigen::Vector3d origin_w = nominal_.nominal_point(state, tool_offset_);
-  Eigen::Matrix3d columns;
-  for (const AxisName axis : kLinearAxes) {
+  Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(axes_.size()));
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
     MachineState moved = state;
-    moved.position[index_of(axis)] = 1.0;
-    columns.col(direction_of(axis)) = nominal_.nominal_point(moved, tool_offset_) - origin_w;
+    moved.position[index_of(axes_[i])] = 1.0;
+    columns.col(static_cast<Eigen::Index>(i)) = nominal_.nominal_point(moved, tool_offset_) - origin_w;
   }
   return columns;
 }
 
+CommandedPoint Follower::nearest(const CommandedPoint& rotary, const Eigen::Vector3d& target_w) const {
+  CommandedPoint point = rotary;
+  for (const AxisName axis : axes_) point.position[index_of(axis)] = 0.0;
+  const Eigen::Vector3d move_w =
+      target_w - nominal_.nominal_point({point.position, point.direction, 0.0, {}}, tool_offset_);
+  const Eigen::VectorXd moves = moves_along(directions(rotary), move_w);
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    point.position[index_of(axes_[i])] = moves[static_cast<Eigen::Index>(i)];
+  return point;
+}
+
 Follower::Pose Follower::at(const CommandedPoint& rotary, const Eigen::Vector3d& target_w) const {
-  Pose pose{rotary, ""};
-  const Eigen::Matrix3d columns = directions(rotary);
-  if (std::abs(columns.determinant()) < kLeastDirection) {
-    pose.outside = "XYZ";
+  Pose pose{rotary, "", true};
+  const Eigen::Matrix3Xd columns = directions(rotary);
+  const auto lead_nowhere = [&] {
+    for (const AxisName axis : axes_) pose.outside += letter_of(axis);
+    pose.leads_there = false;
     return pose;
-  }
-  MachineState state;
-  state.position = rotary.position;
-  for (const AxisName axis : kLinearAxes) state.position[index_of(axis)] = 0.0;
-  const Eigen::Vector3d move_w = target_w - nominal_.nominal_point(state, tool_offset_);
-  const Eigen::Vector3d moves = columns.partialPivLu().solve(move_w);
-  for (const AxisName name : kLinearAxes) {
+  };
+  if (spanned(columns) < kLeastDirection) return lead_nowhere();
+  pose.point = nearest(rotary, target_w);
+  const Eigen::Vector3d reached_w =
+      nominal_.nominal_point({pose.point.position, pose.point.direction, 0.0, {}}, tool_offset_);
+  if ((reached_w - target_w).norm() > kAtTarget) return lead_nowhere();
+  for (const AxisName name : axes_) {
     const Axis& axis = nominal_.machine().axis(name);
-    const double q = moves[direction_of(name)];
-    pose.point.position[index_of(name)] = q;
+    const double q = pose.point.position[index_of(name)];
     if (q < axis.travel_min - kAtTravelEnd || q > axis.travel_max + kAtTravelEnd)
       pose.outside += letter_of(name);
   }
@@ -208,8 +249,9 @@ Follower::Pose Follower::at(const CommandedPoint& rotary, const Eigen::Vector3d&
 
 CommandedPoint Follower::moved(const CommandedPoint& pose, const Eigen::Vector3d& shift_w) const {
   CommandedPoint moved = pose;
-  const Eigen::Vector3d moves = directions(pose).partialPivLu().solve(shift_w);
-  for (const AxisName axis : kLinearAxes) moved.position[index_of(axis)] += moves[direction_of(axis)];
+  const Eigen::VectorXd moves = moves_along(directions(pose), shift_w);
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    moved.position[index_of(axes_[i])] += moves[static_cast<Eigen::Index>(i)];
   return moved;
 }
 

@@ -41,25 +41,34 @@ std::vector<CommandedPoint> rotary_path(const Machine& machine, const RotaryGrid
 Eigen::Matrix3d axes_of_frame(const TruthMachine& machine, const MachineState& state,
                               const std::string& frame);
 
-/// Linear axes follow: which positions bring the nominal tool point to a place.
+/// Nominal direction of a rotary axis, workpiece coordinates, the other axes as in `point`: that in which the
+/// tool turns against the workpiece for a positive command.
+Eigen::Vector3d rotary_direction_w(const TruthMachine& nominal, const CommandedPoint& point, AxisName axis);
+
+/// Linear axes follow: which positions bring the nominal tool point to a place. Of a machine without X, Y or
+/// Z those that it has, as far as they lead there.
 class Follower {
  public:
   Follower(const TruthMachine& nominal, Eigen::Vector3d tool_offset);
 
   struct Pose {
     CommandedPoint point;
-    std::string outside;  ///< letters of linear axes beyond their travel, "X"; "XYZ" where none lead there
+    std::string outside;  ///< letters of linear axes beyond their travel, "X"; all where none lead there
+    bool leads_there = true;
   };
   /// `rotary`: rotary positions, line and run are kept; directions are not set.
   Pose at(const CommandedPoint& rotary, const Eigen::Vector3d& target_w) const;
+  /// The linear axes as near to `target_w` as they lead; travel is not looked at.
+  CommandedPoint nearest(const CommandedPoint& rotary, const Eigen::Vector3d& target_w) const;
   /// The axes of a pose moved so that its nominal tool point moves by `shift_w`; travel is not looked at.
   CommandedPoint moved(const CommandedPoint& pose, const Eigen::Vector3d& shift_w) const;
 
  private:
-  Eigen::Matrix3d directions(const CommandedPoint& rotary) const;
+  Eigen::Matrix3Xd directions(const CommandedPoint& rotary) const;
 
   const TruthMachine& nominal_;
   Eigen::Vector3d tool_offset_;
+  std::vector<AxisName> axes_;  ///< X, Y, Z, of which the machine has them
 };
 
 /// Rotary positions of points that have linear ones. `Grid`: the nodes of `grid` one after another.

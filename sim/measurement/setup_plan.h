@@ -72,6 +72,7 @@ struct SetupPlan {
   Options options;  ///< keys of the instrument's schema, SI
   InstrumentTruth truth;
   bool records_feed = false;
+  bool with_setup_before = false;  ///< read at the same times, by further channels of one instrument
   /// Poses that were asked for and lie beyond the travel of these linear axes.
   std::size_t poses_left_out = 0;
   std::string left_out_by;

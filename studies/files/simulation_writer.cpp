@@ -37,7 +37,10 @@ std::string truth_csv(const sim::TruthMachine& truth) {
     }
   }
   const auto symbols = tables.datum().squareness();
-  for (std::size_t i = 0; i < symbols.size(); ++i) text += location_row(symbols[i], tables.squareness()[i]);
+  for (std::size_t i = 0; i < symbols.size(); ++i) {
+    if (!truth.machine().has_axis(symbols[i].axis)) continue;
+    text += location_row(symbols[i], tables.squareness()[i]);
+  }
   for (const Axis& axis : truth.machine().axes) {
     if (is_parallel(axis.name)) {
       for (const LocationSymbol& symbol : sim::linear_locations(truth.machine(), axis.name))

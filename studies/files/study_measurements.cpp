@@ -36,17 +36,23 @@ void read_planes(const TomlTable& table, std::vector<std::string>& planes) {
   if (const auto found = table.texts("planes")) planes = *found;
 }
 
-void read_axes(const TomlTable& table, std::vector<AxisName>& axes) {
+template <class IsWanted>
+void read_axes(const TomlTable& table, const IsWanted& is_wanted, const std::string& remedy,
+               std::vector<AxisName>& axes) {
   const auto names = table.texts("axes");
   if (!names) return;
   axes.clear();
   for (const std::string& name : *names) {
     const auto axis = name.size() == 1 ? axis_from_letter(name[0]) : std::nullopt;
-    if (!axis || is_rotary(*axis)) {
-      table.fail("axes", table.path() + ".axes names \"" + name + "\"", "list linear axes: [\"X\", \"Y\"]");
-    }
+    if (!axis || !is_wanted(*axis))
+      table.fail("axes", table.path() + ".axes names \"" + printable(name) + "\"", remedy);
     axes.push_back(*axis);
   }
+}
+
+void read_linear_axes(const TomlTable& table, std::vector<AxisName>& axes) {
+  read_axes(
+      table, [](AxisName axis) { return !is_rotary(axis); }, "list linear axes: [\"X\", \"Y\"]", axes);
 }
 
 /// `readings` follow from the numbers beside `key`.
@@ -259,7 +265,7 @@ sim::MeasurementSettings read_diagonals(const TomlTable& table) {
 
 sim::MeasurementSettings read_axis_lines(const TomlTable& table) {
   sim::AxisLines settings;
-  read_axes(table, settings.axes);
+  read_linear_axes(table, settings.axes);
   settings.offset_per_line = table.choice("offset_per", {"setup", "line"}).value_or("setup") == "line";
   read(table, "offset_spread_um", settings.offset_spread);
   read_line_settings(table, settings);
@@ -269,7 +275,7 @@ sim::MeasurementSettings read_axis_lines(const TomlTable& table) {
 
 sim::MeasurementSettings read_straightness(const TomlTable& table) {
   sim::StraightnessLines settings;
-  read_axes(table, settings.axes);
+  read_linear_axes(table, settings.axes);
   read(table, "offset_spread_um", settings.offset_spread);
   read(table, "rotation_spread_urad", settings.rotation_spread);
   read_line_settings(table, settings);
@@ -289,7 +295,8 @@ sim::MeasurementSettings read_squares(const TomlTable& table) {
 
 sim::MeasurementSettings read_angles(const TomlTable& table) {
   sim::AngleLines settings;
-  read_axes(table, settings.axes);
+  read_axes(
+      table, [](AxisName) { return true; }, "list axes of the machine: [\"X\", \"C\"]", settings.axes);
   if (const auto body = table.choice("body", {"relative", "tool", "table"})) settings.body = *body;
   read(table, "offset_spread_urad", settings.offset_spread);
   read_line_settings(table, settings);
@@ -373,6 +380,36 @@ sim::MeasurementSettings read_ball_bar_poses(const TomlTable& table) {
   return settings;
 }
 
+sim::MeasurementSettings read_axis_of_rotation(const TomlTable& table) {
+  sim::AxisOfRotation settings;
+  read_axes(table, is_rotary, "list rotary axes: [\"C\"]", settings.axes);
+  if (const auto tools = table.texts("tools")) settings.tools = *tools;
+  if (const auto heights = table.numbers("heights_mm")) settings.heights = *heights;
+  if (const auto frame = table.choice("frame", {"workpiece", "tool", "machine"})) settings.frame = *frame;
+  read_at(table, settings.at);
+  read(table, "points", settings.points, 3);
+  read(table, "runs", settings.runs, 1);
+  require_bounded(table, table.has("runs") ? "runs" : "points",
+                  2.0 * static_cast<double>(settings.points) * static_cast<double>(settings.runs));
+  read(table, "bidirectional", settings.bidirectional);
+  read(table, "offset_spread_um", settings.offset_spread);
+  read(table, "reading_s", settings.seconds_per_reading);
+  read_length_noise(table, settings.noise);
+  return settings;
+}
+
+sim::MeasurementSettings read_drift_at_rest(const TomlTable& table) {
+  sim::DriftAtRest settings;
+  if (const auto tools = table.texts("tools")) settings.tools = *tools;
+  read_at(table, settings.at);
+  if (const auto duration = table.number("duration_s", {1.0, 1e8})) settings.duration = *duration;
+  if (const auto seconds = table.number("reading_s", {1e-3, 1e6})) settings.seconds_per_reading = *seconds;
+  require_bounded(table, "duration_s", settings.duration / settings.seconds_per_reading);
+  read(table, "offset_spread_um", settings.offset_spread);
+  read_length_noise(table, settings.noise);
+  return settings;
+}
+
 struct MeasurementKind {
   const char* name;
   sim::MeasurementSettings (*read)(const TomlTable& table);
@@ -392,6 +429,8 @@ constexpr auto kMeasurementKinds = std::to_array<MeasurementKind>({
     {sim::kRTest, read_r_test},
     {sim::kProbedSphere, read_probed_sphere},
     {"ball-bar-poses", read_ball_bar_poses},
+    {"axis-of-rotation", read_axis_of_rotation},
+    {"drift-at-rest", read_drift_at_rest},
 });
 
 }  // namespace

@@ -34,7 +34,7 @@
 ///     [[measurements]]                   # setups' names start with `name`
 ///     kind = "laser-tracer" | "laser-tracker" | "ball-bar-circles" | "diagonals" | "axis-lines" |
 ///            "straightness-lines" | "squares" | "angle-lines" | "point-grid" |
-///            "r-test" | "probed-sphere" | "ball-bar-poses"
+///            "r-test" | "probed-sphere" | "ball-bar-poses" | "axis-of-rotation" | "drift-at-rest"
 ///     shuffled = true                    # lines in random order
 ///     noise = { constant_um, per_metre_um, repeatability_um,            # the campaign file states these;
 ///               wander_um, wander_time_s, line_um, outlier_share, outlier_sigma }   # these are sealed
@@ -43,8 +43,9 @@
 ///     symbol = "EXX"
 ///     period_mm = 10.0
 ///     amplitude_um = 2.0                 # or rms_um = 0.8, of its effect on the readings
-/// Rotary axes move in the last three kinds and, on a grid or at random, with rotary = "grid" | "random" in
-/// trackings and point-grid ([docs/guides/calibrate-a-five-axis-machine.md](../../docs/guides)):
+/// Rotary axes move in r-test, probed-sphere and ball-bar-poses and, on a grid or at random, with rotary =
+/// "grid" | "random" in trackings and point-grid
+/// ([docs/guides/calibrate-a-five-axis-machine.md](../../docs/guides)):
 ///     kind = "r-test"
 ///     tools = ["short", "long"]          # each with every sphere; absent: the machine's first three
 ///     positions = { A = 7, C = 12 }      # of each rotary axis
@@ -53,6 +54,18 @@
 ///     [[measurements.spheres]]
 ///     name = "S1"
 ///     position_mm = [120.0, 0.0, -350.0] # workpiece coordinates
+/// Direct tests of a standard:
+///     kind = "angle-lines"               # ISO 230-2: of a rotary axis the angle about itself
+///     axes = ["C"]                       # absent: X, Y, Z
+///     kind = "axis-of-rotation"          # ISO 230-7: a sphere on the line of an axis that turns alone
+///     axes = ["C"]                       # absent: every rotary axis
+///     tools = ["short"]                  # absent: the first
+///     heights_mm = [0.0, 100.0]          # of spheres along the line from centre_mm; two tell tilts
+///     points, runs, frame, bidirectional
+///     kind = "drift-at-rest"             # ISO 230-3: nothing moves, tools are read at the same times
+///     tools = ["short", "long"]          # absent: the first; two lengths tell tilts
+///     duration_s = 14400.0
+///     reading_s = 300.0
 /// Keys of a measurement: study_measurements.cpp; defaults: sim/measurement/measurements.h.
 
 #include <string>

@@ -85,6 +85,24 @@ TEST(DiagnoseProgram, RefusesToSeparateWhatDoesNotExist) {
   EXPECT_THAT(nothing.errors, HasSubstr("names nothing that could act here"));
 }
 
+/// The same as with "--formula model": beside the surface there would be nothing to explain.
+TEST(DiagnoseProgram, LooksForALawInThePlaceOfTheModelsSurface) {
+  const testing::ScratchFolder scratch;
+  const std::string model = (scratch.path() / "model.toml").string();
+  std::ofstream(model) << "format = \"volcal-model-1\"\nmachine = \"" + kData + "/small/machine.toml\"\n"
+                       << "[[effects]]\nkind = \"empirical\"\n"
+                          "target = \"EYY\"\ndrivers = \"x y\"\n";
+  const auto asked = [&](const std::string& formula) {
+    const auto run = run_program("diagnose " + kData + "/small/campaign.toml --model " + model +
+                                 " --json --formula \"" + formula + "\"");
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    return nlohmann::json::parse(run.output).at("asked_laws");
+  };
+  const auto by_name = asked("EYY: y x");
+  ASSERT_EQ(by_name.size(), 1U);
+  EXPECT_EQ(by_name, asked("model"));
+}
+
 TEST(DiagnoseProgram, LooksForTheLawThatIsAskedFor) {
   const std::string command = "diagnose " + kData + "/small/campaign.toml ";
   const auto run = run_program(command + "--json --formula \"EXX: dir_x T_air\" --formula \"EYY: y x\"");

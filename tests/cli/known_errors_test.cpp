@@ -138,6 +138,9 @@ TEST_F(KnownErrors, AreHeldBeyondWhatWasMeasured) {
   write("wrong.toml", known + "[measured]\nX_mm = [150, -200]\n");
   refused("budget " + path("wrong.toml"), "measured.X_mm is not the first and the last position",
           "[FIRST, LAST]");
+  write("unsorted.toml", known + "[measured]\nT_column_degC = [24, 21, 19]\n");
+  refused("budget " + path("unsorted.toml"),
+          "measured.T_column_degC is not the least, mean and greatest value", "[LEAST, MEAN, GREATEST]");
 }
 
 TEST_F(KnownErrors, TablesAndResultsAreSimulatedToo) {

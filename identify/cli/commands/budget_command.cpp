@@ -59,9 +59,9 @@ int run_design(const BudgetArguments& arguments) {
 int run_budget(const BudgetArguments& arguments) {
   if (is_design(arguments.errors, arguments.tolerances)) return run_design(arguments);
   const FitResult result = read_known_errors(arguments.errors);
-  if (arguments.conditions.no_extrapolation) require_measured_travel(result);
   const Tool& tool = chosen_tool(result.machine, arguments);
   const Conditions conditions = conditions_of(result, arguments.conditions);
+  if (arguments.conditions.no_extrapolation) require_within_readings(result, conditions);
   const ErrorBudget budget = error_budget(result, tool, conditions, arguments.grid);
   if (arguments.json) {
     nlohmann::ordered_json json = error_budget_json(budget);

@@ -135,12 +135,13 @@ std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vec
   return judged;
 }
 
-/// Each axis once.
+/// Each axis and each curve or surface once.
 void note_held_errors(const std::vector<NamedModel>& models, Campaign& campaign) {
   std::set<std::string> said;
   for (const NamedModel& model : models) {
     for (Finding& held : held_beyond_measured(campaign, model.spec)) {
-      if (said.insert(held.text("axis")).second) campaign.notes.push_back(std::move(held));
+      const std::string& what = held.has("axis") ? held.text("axis") : held.text("effect");
+      if (said.insert(what).second) campaign.notes.push_back(std::move(held));
     }
   }
 }

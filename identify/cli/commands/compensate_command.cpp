@@ -197,6 +197,7 @@ int run_compensate(const CompensateArguments& arguments) {
   require_output(arguments);
   const FitResult result = read_known_errors(arguments.result);
   const Conditions conditions = conditions_of(result, arguments.conditions);
+  if (arguments.conditions.no_extrapolation) require_conditions_of_readings(result, conditions);
   if (const auto begin = first_tcp(arguments.program)) return run_tcp(result, arguments, conditions, *begin);
   if (arguments.orientation)
     throw InputError({arguments.program, 0},

@@ -50,7 +50,8 @@ int run_export(const ExportArguments& arguments) {
   if (arguments.gtc == arguments.npz)
     throw InputError({}, "--gtc and --npz name one file", "give each a file of its own");
   const FitResult result = read_result(arguments.result);
-  if (arguments.conditions.no_extrapolation) require_measured_travel(result);
+  if (arguments.conditions.no_extrapolation)
+    require_within_readings(result, conditions_of(result, arguments.conditions));
   const JointValues parameters = parameters_with_covariance(result);
   const ErrorTableOptions options = export_table_options(result, arguments);
   const JointTable table = table_with_covariance(result, options);

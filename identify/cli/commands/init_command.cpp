@@ -64,7 +64,7 @@ std::string machine_toml(const Structure& structure) {
   const bool rotary = has_rotary_axes(structure);
   for (const Joint& joint : structure.joints)
     text += rotary ? axis_table_beside_rotary(joint.axis, structure) : axis_table(joint.axis);
-  if (rotary) return text + rotary_tools();
+  if (rotary) return text + rotary_tools(structure);
   return text +
          "[tools.short]\noffset_mm = [0.0, 0.0, -150.0]  # functional point from the spindle's reference "
          "point\n"
@@ -127,7 +127,7 @@ std::string campaign_toml(const Structure& structure) {
   std::vector<std::string> shown;
   if (has_rotary_axes(structure)) {
     text += rotary_setups(structure, position_columns(structure));
-    shown = rotary_instruments();
+    shown = rotary_instruments(structure);
   }
   for (const Instrument* instrument : instruments()) {
     if (std::ranges::find(shown, instrument->schema().name) != shown.end()) continue;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "volcal/sim/measurement/measurements.h"
 
@@ -21,6 +22,11 @@ constexpr TemplateSpheres kSpheresOfATurningTable = {
     {{"S1", {120.0, 0.0, -370.0}}, {"S2", {-60.0, 100.0, -350.0}}, {"S3", {-60.0, -100.0, -330.0}}}};
 constexpr TemplateSpheres kSpheresOfAFixedTable = {
     {{"S1", {150.0, 0.0, -400.0}}, {"S2", {-100.0, 150.0, -350.0}}, {"S3", {-100.0, -150.0, -450.0}}}};
+/// In the plane of X and Z, of machines that have two linear axes.
+constexpr TemplateSpheres kSpheresOfATurningTableInPlane = {
+    {{"S1", {120.0, 0.0, -370.0}}, {"S2", {-60.0, 0.0, -330.0}}, {"S3", {-60.0, 0.0, -450.0}}}};
+constexpr TemplateSpheres kSpheresOfAFixedTableInPlane = {
+    {{"S1", {150.0, 0.0, -400.0}}, {"S2", {-100.0, 0.0, -350.0}}, {"S3", {-50.0, 0.0, -480.0}}}};
 constexpr std::array<const char*, 3> kTemplateTools = {"short", "long", "side"};
 
 bool has_axis(const Structure& structure, AxisName axis) {
@@ -37,30 +43,81 @@ bool is_on_workpiece_side(const Structure& structure, AxisName axis) {
   return std::ranges::find(structure.joints, axis, &Joint::axis)->workpiece_side;
 }
 
-const TemplateSpheres& spheres_of(const Structure& structure) {
-  return has_rotary_axes(structure, true) ? kSpheresOfATurningTable : kSpheresOfAFixedTable;
-}
-
 std::string vector_text(const std::array<double, 3>& v) {
   return fmt::format("[{:.1f}, {:.1f}, {:.1f}]", v[0], v[1], v[2]);
 }
 
+std::vector<AxisName> rotary_axes(const Structure& structure) {
+  std::vector<AxisName> axes;
+  for (const AxisName axis : kAllAxes) {
+    if (is_rotary(axis) && has_axis(structure, axis)) axes.push_back(axis);
+  }
+  return axes;
+}
+
+bool contains(const std::vector<AxisName>& axes, AxisName axis) {
+  return std::ranges::find(axes, axis) != axes.end();
+}
+
 std::string rotary_letters(const Structure& structure) {
   std::string letters;
-  for (const AxisName axis : kAllAxes) {
-    if (!is_rotary(axis) || !has_axis(structure, axis)) continue;
+  for (const AxisName axis : rotary_axes(structure))
     letters += (letters.empty() ? "" : " and ") + std::string(1, letter_of(axis));
-  }
   return letters;
 }
 
-/// positions = { A = 9, C = 12 }
-std::string positions_table(const Structure& structure) {
+std::vector<AxisName> missing_linear_axes(const Structure& structure) {
+  std::vector<AxisName> missing;
+  for (const AxisName axis : kLinearAxes) {
+    if (!has_axis(structure, axis)) missing.push_back(axis);
+  }
+  return missing;
+}
+
+/// Two linear axes keep a tool point on a sphere where a rotary axis turns about the normal of their plane.
+/// Tools of different length reach one sphere where Z is one of the two.
+bool is_followed(const Structure& structure, AxisName axis) {
+  const std::vector<AxisName> missing = missing_linear_axes(structure);
+  if (missing.empty()) return true;
+  return missing.size() == 1 && missing.front() != AxisName::Z &&
+         direction_of(axis) == direction_of(missing.front());
+}
+
+/// Rotary axes that are tested alone.
+std::vector<AxisName> axes_alone(const Structure& structure) {
+  std::vector<AxisName> alone = rotary_axes(structure);
+  std::erase_if(alone, [&](AxisName axis) { return is_followed(structure, axis); });
+  return alone;
+}
+
+TemplateSpheres spheres_of(const Structure& structure) {
+  const bool turning = has_rotary_axes(structure, true);
+  if (missing_linear_axes(structure).empty())
+    return turning ? kSpheresOfATurningTable : kSpheresOfAFixedTable;
+  TemplateSpheres spheres = turning ? kSpheresOfATurningTableInPlane : kSpheresOfAFixedTableInPlane;
+  for (TemplateSphere& sphere : spheres) {
+    if (!has_axis(structure, AxisName::X)) std::swap(sphere.position_mm[0], sphere.position_mm[1]);
+  }
+  return spheres;
+}
+
+/// A tool comes onto the line of a table, and of a head that turns about the tool.
+bool has_line_within_reach(const Structure& structure, AxisName axis) {
+  return is_on_workpiece_side(structure, axis) || axis == AxisName::C;
+}
+
+std::string listed(const std::vector<AxisName>& axes) {
+  std::string text;
+  for (const AxisName axis : axes) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", letter_of(axis));
+  return "[" + text + "]";
+}
+
+/// positions = { A = 9, C = 12 }; one of an axis that stands.
+std::string positions_table(const Structure& structure, const std::vector<AxisName>& standing = {}) {
   std::string inside;
-  for (const AxisName axis : kAllAxes) {
-    if (!is_rotary(axis) || !has_axis(structure, axis)) continue;
-    inside +=
-        fmt::format("{}{} = {}", inside.empty() ? "" : ", ", letter_of(axis), axis == AxisName::C ? 12 : 9);
+  for (const AxisName axis : rotary_axes(structure)) {
+    const int count = contains(standing, axis) ? 1 : axis == AxisName::C ? 12 : 9;
+    inside += fmt::format("{}{} = {}", inside.empty() ? "" : ", ", letter_of(axis), count);
   }
   return "{ " + inside + " }";
 }
@@ -71,6 +128,126 @@ std::string commented_head(const std::string& name, const std::string& instrumen
       "#[[setups]]\n#name = \"{0}\"\n#instrument = \"{1}\"\n#data = \"{0}.csv\"  # columns: {2}\n#tool = "
       "\"{3}\"\n",
       name, instrument, columns, tool);
+}
+
+/// Setups with spheres that the tool point stays on.
+std::string sphere_setups(const Structure& structure, const std::string& positions) {
+  std::string text;
+  for (const TemplateSphere& sphere : spheres_of(structure)) {
+    for (const char* tool : kTemplateTools) {
+      text += commented_head(fmt::format("rtest_{}_{}", sphere.name, tool), sim::kRTest,
+                             positions + ",dx_um,dy_um,dz_um", tool);
+      text += fmt::format(
+          "#sphere = \"{}\"  # setups that name one sphere share where it is\n#frame = \"workpiece\"  # axes "
+          "of "
+          "the readings; or tool, machine\n#noise = {{ constant_um = 0.5 }}\n\n",
+          sphere.name);
+    }
+  }
+  text +=
+      "# The same with a touch probe: the centres that the control records, or, better, every contact with "
+      "its "
+      "direction.\n"
+      "# reading: centre less the machine's error there, or n.(tip + error) = n.centre + radius, n out of "
+      "the "
+      "sphere\n";
+  text += commented_head("probe_P1_short", sim::kProbedSphere, positions + ",cx_mm,cy_mm,cz_mm", "short") +
+          "#sphere = \"P1\"  # place and session: a new name whenever the sphere was moved\n"
+          "#noise = { constant_um = 1.0 }\n\n";
+  return text +
+         commented_head("probe_P1_short_U", sim::kProbedSphere,
+                        positions + ",tip_x_mm,tip_y_mm,tip_z_mm,n_x,n_y,n_z", "short") +
+         "#sphere = \"P1\"\n"
+         "#contact = \"U\"  # kind of contact: setups of one kind share the radius\n"
+         "#radius_mm = 18.0  # sphere and ball, nominal\n"
+         "#radius_sigma_um = 5.0  # 0: calibrated; left out: free\n"
+         "#noise = { constant_um = 1.0 }\n\n";
+}
+
+/// Setups of one axis that turns alone.
+std::string setups_alone(const Structure& structure, AxisName axis, const std::string& positions) {
+  const char letter = letter_of(axis);
+  const Eigen::Vector3d along = Eigen::Vector3d::Unit(direction_of(axis));
+  std::string text = fmt::format(
+      "# Axis {0}, which turns alone: two linear axes keep no tool point on a sphere beside its line.\n"
+      "# reading: angle of the axis about itself, actual less commanded (ISO 230-2)\n",
+      letter);
+  text += commented_head(fmt::format("angle_{}", letter), "angle", positions + ",angle_urad", "short") +
+          fmt::format("#axis = [{:.1f}, {:.1f}, {:.1f}]\n#noise = {{ constant_urad = 0.5 }}\n\n", along.x(),
+                      along.y(), along.z());
+  if (!has_line_within_reach(structure, axis)) return text;
+  text += "# reading: displacement of a sphere on the line of the axis (ISO 230-7); two heights tell tilts\n";
+  for (const char* height : {"low", "high"})
+    text += commented_head(fmt::format("rotation_{}_{}", letter, height), sim::kRTest,
+                           positions + ",dx_um,dy_um,dz_um", "short") +
+            fmt::format("#sphere = \"{}_{}\"\n#frame = \"workpiece\"\n#noise = {{ constant_um = 0.3 }}\n\n",
+                        letter, height);
+  return text;
+}
+
+std::string spheres_introduced(const Structure& structure) {
+  const std::string letters = rotary_letters(structure);
+  const bool two = letters.size() > 1;
+  return fmt::format(
+      "\n# Rotary axes. Three spheres on the table, on no line, each with two tools of different length and "
+      "one with a\n"
+      "# lateral offset. At every sphere {}, the linear axes following (tool centre point control):\n"
+      "# {}. volcal simulate study.toml -o poses writes the positions to\n"
+      "# be programmed; leave out the poses that your machine does not reach.\n"
+      "# reading: tool point relative to the workpiece less its nominal place, plus the sphere's offset, in "
+      "the "
+      "axes of `frame`\n",
+      two ? "every combination of " + letters : "every position of " + letters,
+      two ? "one axis alone leaves most of the location errors invisible"
+          : "a whole turn of positions tells the axis from its errors");
+}
+
+/// Two places on the line of an axis, which tell tilts: along a table's line where a linear axis goes along
+/// it, otherwise two tools.
+std::string rotation_measurement(const Structure& structure, AxisName axis) {
+  const AxisName along = kLinearAxes[static_cast<std::size_t>(direction_of(axis))];
+  const bool moves_along = is_on_workpiece_side(structure, axis) && has_axis(structure, along);
+  return fmt::format(
+      "\n[[measurements]]  # axis of rotation, spheres at two places on its line (ISO 230-7)\n"
+      "kind = \"axis-of-rotation\"\n"
+      "axes = [\"{}\"]\n"
+      "{}\n"
+      "points = 36\n",
+      letter_of(axis),
+      moves_along ? "tools = [\"short\"]\nheights_mm = [0.0, 100.0]  # from centre_mm along the line"
+                  : "tools = [\"short\", \"long\"]");
+}
+
+/// Measurements of the rotary axes for a study file.
+std::string rotary_measurements(const Structure& structure) {
+  const std::vector<AxisName> alone = axes_alone(structure);
+  std::string text;
+  if (alone.size() < rotary_axes(structure).size()) {
+    text += fmt::format(
+        "\n[[measurements]]  # rotary axes, linear axes following\n"
+        "kind = \"{}\"\n"
+        "tools = [\"short\", \"long\", \"side\"]  # two lengths and a lateral offset\n"
+        "positions = {}\n"
+        "poses = \"grid\"  # every combination; \"singly\": one axis after another, which sees far less\n"
+        "jitter = 0.3  # of a step: regular positions take high harmonics for low ones\n"
+        "noise = {{ constant_um = 0.5, repeatability_um = 0.5 }}\n",
+        sim::kRTest, positions_table(structure, alone));
+    for (const TemplateSphere& sphere : spheres_of(structure))
+      text += fmt::format("[[measurements.spheres]]\nname = \"{}\"\nposition_mm = {}\n", sphere.name,
+                          vector_text(sphere.position_mm));
+  }
+  if (alone.empty()) return text;
+  text += fmt::format(
+      "\n[[measurements]]  # angular positioning, one axis after another (ISO 230-2)\n"
+      "kind = \"angle-lines\"\n"
+      "axes = {}\n"
+      "points = 25\n"
+      "runs = 2\n",
+      listed(alone));
+  for (const AxisName axis : alone) {
+    if (has_line_within_reach(structure, axis)) text += rotation_measurement(structure, axis);
+  }
+  return text;
 }
 
 }  // namespace
@@ -97,97 +274,53 @@ std::string axis_table_beside_rotary(AxisName axis, const Structure& structure) 
       letter_of(axis), travel);
 }
 
-std::string rotary_tools() {
-  return "[tools.short]\noffset_mm = [0.0, 0.0, -150.0]  # functional point from the spindle's reference "
-         "point\n"
-         "[tools.long]  # two lengths tell tilts of a rotary axis from displacements\n"
-         "offset_mm = [0.0, 0.0, -250.0]\n"
-         "[tools.side]  # a lateral offset makes the rolls of the last axis visible\n"
-         "offset_mm = [80.0, 0.0, -200.0]\n";
+std::string rotary_tools(const Structure& structure) {
+  return fmt::format(
+      "[tools.short]\noffset_mm = [0.0, 0.0, -150.0]  # functional point from the spindle's reference "
+      "point\n"
+      "[tools.long]  # two lengths tell tilts of a rotary axis from displacements\n"
+      "offset_mm = [0.0, 0.0, -250.0]\n"
+      "[tools.side]  # a lateral offset makes the rolls of the last axis visible\n"
+      "offset_mm = {}\n",
+      has_axis(structure, AxisName::X) ? "[80.0, 0.0, -200.0]" : "[0.0, 80.0, -200.0]");
 }
 
-std::vector<std::string> rotary_instruments() { return {sim::kRTest, sim::kProbedSphere}; }
+std::vector<std::string> rotary_instruments(const Structure& structure) {
+  if (axes_alone(structure).size() == rotary_axes(structure).size()) return {sim::kRTest};
+  return {sim::kRTest, sim::kProbedSphere};
+}
 
 std::string rotary_setups(const Structure& structure, const std::string& positions) {
-  const std::string letters = rotary_letters(structure);
-  const bool two = letters.size() > 1;
-  std::string text = fmt::format(
-      "\n# Rotary axes. Three spheres on the table, on no line, each with two tools of different length and "
-      "one with a\n"
-      "# lateral offset. At every sphere {}, the linear axes following (tool centre point control):\n"
-      "# {}. volcal simulate study.toml -o poses writes the positions to\n"
-      "# be programmed; leave out the poses that your machine does not reach.\n"
-      "# reading: tool point relative to the workpiece less its nominal place, plus the sphere's offset, in "
-      "the "
-      "axes of `frame`\n",
-      two ? "every combination of " + letters : "every position of " + letters,
-      two ? "one axis alone leaves most of the location errors invisible"
-          : "a whole turn of positions tells the axis from its errors");
-  for (const TemplateSphere& sphere : spheres_of(structure)) {
-    for (const char* tool : kTemplateTools) {
-      text += commented_head(fmt::format("rtest_{}_{}", sphere.name, tool), sim::kRTest,
-                             positions + ",dx_um,dy_um,dz_um", tool);
-      text += fmt::format(
-          "#sphere = \"{}\"  # setups that name one sphere share where it is\n#frame = \"workpiece\"  # axes "
-          "of "
-          "the readings; or tool, machine\n#noise = {{ constant_um = 0.5 }}\n\n",
-          sphere.name);
-    }
-  }
-  text +=
-      "# The same with a touch probe: the centres that the control records, or, better, every contact with "
-      "its "
-      "direction.\n"
-      "# reading: centre less the machine's error there, or n.(tip + error) = n.centre + radius, n out of "
-      "the "
-      "sphere\n";
-  text += commented_head("probe_P1_short", sim::kProbedSphere, positions + ",cx_mm,cy_mm,cz_mm", "short") +
-          "#sphere = \"P1\"  # place and session: a new name whenever the sphere was moved\n"
-          "#noise = { constant_um = 1.0 }\n\n";
-  text += commented_head("probe_P1_short_U", sim::kProbedSphere,
-                         positions + ",tip_x_mm,tip_y_mm,tip_z_mm,n_x,n_y,n_z", "short") +
-          "#sphere = \"P1\"\n"
-          "#contact = \"U\"  # kind of contact: setups of one kind share the radius\n"
-          "#radius_mm = 18.0  # sphere and ball, nominal\n"
-          "#radius_sigma_um = 5.0  # 0: calibrated; left out: free\n"
-          "#noise = { constant_um = 1.0 }\n\n"
-          "# Linear axes, and rotary axes by other instruments:\n";
-  return text;
+  const std::vector<AxisName> alone = axes_alone(structure);
+  std::string text;
+  if (alone.size() < rotary_axes(structure).size())
+    text += spheres_introduced(structure) + sphere_setups(structure, positions);
+  if (!alone.empty()) text += "\n";
+  for (const AxisName axis : alone) text += setups_alone(structure, axis, positions);
+  return text + "# Linear axes, and rotary axes by other instruments:\n";
 }
 
 std::string rotary_study(const Structure& structure) {
-  for (const AxisName axis : kLinearAxes) {
-    if (!has_axis(structure, axis)) return "";
-  }
-  std::string spheres;
-  for (const TemplateSphere& sphere : spheres_of(structure)) {
-    spheres += fmt::format("[[measurements.spheres]]\nname = \"{}\"\nposition_mm = {}\n", sphere.name,
-                           vector_text(sphere.position_mm));
-  }
+  if (missing_linear_axes(structure).size() > 1) return "";
   return fmt::format(
-      "# A rehearsal: volcal simulate study.toml -o rehearsal measures this on a machine with random "
-      "errors.\n"
-      "# Its CSV files have the positions to be programmed.\n"
-      "format = \"volcal-study-1\"\n"
-      "machine = \"machine.toml\"\n"
-      "seed = 1\n"
-      "[truth]\n"
-      "volumetric_rms_um = [4.0, 6.0]  # of the linear axes; rotary axes: 15 um and 40 urad of location, 3 "
-      "um "
-      "and 15 urad of motion\n"
-      "\n"
-      "[[measurements]]  # linear axes, rotary axes at home\n"
-      "kind = \"{}\"\n"
-      "grid = [6, 5, 4]\n"
-      "\n"
-      "[[measurements]]  # rotary axes, linear axes following\n"
-      "kind = \"{}\"\n"
-      "tools = [\"short\", \"long\", \"side\"]  # two lengths and a lateral offset\n"
-      "positions = {}\n"
-      "poses = \"grid\"  # every combination; \"singly\": one axis after another, which sees far less\n"
-      "noise = {{ constant_um = 0.5, repeatability_um = 0.5 }}\n"
-      "{}",
-      sim::kLaserTracer, sim::kRTest, positions_table(structure), spheres);
+             "# A rehearsal: volcal simulate study.toml -o rehearsal measures this on a machine with random "
+             "errors.\n"
+             "# Its CSV files have the positions to be programmed.\n"
+             "format = \"volcal-study-1\"\n"
+             "machine = \"machine.toml\"\n"
+             "seed = 1\n"
+             "[truth]\n"
+             "volumetric_rms_um = [4.0, 6.0]  # of the linear axes; rotary axes: 15 um and 40 urad of "
+             "location, 3 "
+             "um "
+             "and 15 urad of motion\n"
+             "\n"
+             "[[measurements]]  # linear axes, rotary axes at home\n"
+             "kind = \"{}\"\n"
+             "grid = [6, 5, 4]{}\n",
+             sim::kLaserTracer,
+             missing_linear_axes(structure).empty() ? "" : "  # one position of an axis that is not there") +
+         rotary_measurements(structure);
 }
 
 }  // namespace volcal::cli

@@ -16,16 +16,17 @@ bool has_rotary_axes(const Structure& structure);
 std::string axis_table_beside_rotary(AxisName axis, const Structure& structure);
 
 /// [tools.NAME]: two lengths and one with a lateral offset.
-std::string rotary_tools();
+std::string rotary_tools(const Structure& structure);
 
-/// Commented setups, whose readings have the columns `positions` of commanded positions.
+/// Commented setups, spheres that the tool point stays on, or of axes that two linear axes cannot follow
+/// tests of each alone. Their readings have the columns `positions` of commanded positions.
 std::string rotary_setups(const Structure& structure, const std::string& positions);
 
 /// Instruments that rotary_setups() shows.
-std::vector<std::string> rotary_instruments();
+std::vector<std::string> rotary_instruments(const Structure& structure);
 
 /// study.toml: what rotary_setups() asks for and the linear axes, measured on a random machine. Empty for a
-/// structure without X, Y and Z.
+/// structure of fewer than two linear axes.
 std::string rotary_study(const Structure& structure);
 
 }  // namespace volcal::cli

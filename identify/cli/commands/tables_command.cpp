@@ -116,7 +116,7 @@ std::vector<VolumetricError> errors_at_points(const FitResult& result, const Tab
       require_identified_rotary_axes(result, position);
       errors.push_back(volumetric_error(result, field, position, tool, direction));
       if (arguments.conditions.no_extrapolation && errors.back().extrapolated)
-        throw InputError({}, "--no-extrapolation: a point of --at lies beyond the measured positions",
+        throw InputError({}, "--no-extrapolation: a point of --at lies beyond the readings",
                          "name a point within them, or leave the option out");
     }
   }
@@ -294,7 +294,11 @@ int run_tables(const TablesArguments& arguments) {
   require_something_to_do(arguments);
   if (!arguments.picture.empty()) require_picture_of_tables(arguments);
   const FitResult result = aligned_result(arguments);
-  if (arguments.conditions.no_extrapolation && makes_tables(arguments)) require_measured_travel(result);
+  if (arguments.conditions.no_extrapolation) {
+    const Conditions conditions = conditions_of(result, arguments.conditions);
+    require_conditions_of_readings(result, conditions);
+    if (makes_tables(arguments)) require_within_readings(result, conditions);
+  }
   const std::vector<VolumetricError> errors = errors_at_points(result, arguments);
   const bool written = !arguments.output.empty() && !arguments.dry_run;
   const auto sources = certificate_sources(arguments.certificate, result, written);

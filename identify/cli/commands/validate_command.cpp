@@ -106,7 +106,10 @@ int run_validate(const ValidateArguments& arguments) {
                      "validate on a campaign of the same machine");
   }
   const std::optional<MeasuredError> compensated = verify(arguments, campaign);
-  std::ranges::move(missing_rotary_errors(campaign, result.identified), std::back_inserter(campaign.notes));
+  for (Finding& missing : missing_rotary_errors(campaign, result.identified)) {
+    missing.data["in_uncertainty"] = true;
+    campaign.notes.push_back(std::move(missing));
+  }
   std::ranges::move(held_beyond_measured(campaign, model_with_measured_travel(result)),
                     std::back_inserter(campaign.notes));
   const Validation validation = validate(campaign, result, arguments.threads);

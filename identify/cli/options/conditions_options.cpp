@@ -10,9 +10,9 @@ void add_conditions_options(CLI::App& app, ConditionsArguments& arguments) {
                  "T_<channel>=23.3,time_s=3600,feed_mm_min=1000: conditions that the error is stated for; "
                  "default: 20 degC where the model knows the expansion, otherwise the campaign's mean")
       ->delimiter(',');
-  app.add_flag(
-      "--no-extrapolation", arguments.no_extrapolation,
-      "refuse to state errors beyond the measured positions; otherwise the last measured one is held");
+  app.add_flag("--no-extrapolation", arguments.no_extrapolation,
+               "refuse to state errors beyond the measured positions and conditions; otherwise the last "
+               "measured one is held");
 }
 
 std::map<std::string, std::string> named_values(const std::string& option,

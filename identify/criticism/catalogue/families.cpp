@@ -10,6 +10,7 @@
 #include "volcal/identify/criticism/catalogue/family_products.h"
 #include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/effects/registry.h"
@@ -69,6 +70,14 @@ bool Family::independent_components() const {
   return components.size() == all.size();
 }
 
+Eigen::VectorXd Family::largest_amplitudes() const {
+  if (resolution) return {};
+  Eigen::VectorXd largest(amplitudes());
+  for (Eigen::Index k = 0; k < largest.size(); ++k)
+    largest[k] = largest_amplitude(*effect, effect->amplitudes()[static_cast<std::size_t>(k)]);
+  return largest;
+}
+
 EffectName Family::name() const {
   if (!resolution) return effect->name();
   return resolution_name(*resolution);
@@ -124,6 +133,23 @@ std::vector<Family> own_families(const LinearModel& model, std::span<const Effec
 
 namespace {
 
+/// Is each of the amplitudes seen, beside a model in which the others are zero?
+bool each_is_seen(const ScoreTest& score, const ProjectedColumns& projected, Eigen::Index first,
+                  const Eigen::VectorXd& largest) {
+  const Eigen::ArrayXd norm = projected.norm.segment(first, largest.size());
+  const Eigen::ArrayXd left = score.gram.diagonal().array().max(0.0).sqrt();
+  return (norm * largest.array() >= 1.0 && left > kThresholds.invisible_share * norm).all();
+}
+
+ScoreTest nothing_visible(Eigen::Index amplitudes) {
+  ScoreTest test;
+  test.amplitude = Eigen::VectorXd::Zero(amplitudes);
+  test.covariance = Eigen::MatrixXd::Zero(amplitudes, amplitudes);
+  test.gram = Eigen::MatrixXd::Zero(amplitudes, amplitudes);
+  test.score = Eigen::VectorXd::Zero(amplitudes);
+  return test;
+}
+
 /// LM less its price in dof, of the components that are worth it.
 double best_of_components(const ScoreTest& score, double price) {
   const auto count = static_cast<int>(score.score.size());
@@ -139,6 +165,18 @@ double best_of_components(const ScoreTest& score, double price) {
 }
 
 }  // namespace
+
+ScoreTest family_score(const Family& family, const ProjectedColumns& projected, Eigen::Index first,
+                       const Eigen::VectorXd& largest) {
+  const Eigen::Index columns = family.amplitudes();
+  ScoreTest test = score_test(projected, first, columns, largest);
+  if (largest.size() == 0 || test.dof == 0) return test;
+  const bool is_one_thing = columns > 1 && !family.independent_components();
+  const bool is_too_large = (test.amplitude.cwiseAbs().array() > largest.array()).any();
+  if (is_too_large || (is_one_thing && !each_is_seen(test, projected, first, largest)))
+    return nothing_visible(columns);
+  return test;
+}
 
 void update_test(FamilyTest& test, const Family& family, const Eigen::VectorXd& shape, const ScoreTest& score,
                  const Projector& projector) {

@@ -31,6 +31,8 @@ struct Family {
   /// The amplitudes act on different things (components of a displacement), so that each may be absent; the
   /// sine and cosine of a period are one thing.
   bool independent_components() const;
+  /// Of each |amplitude|, SI, what a model file takes; empty: nothing is said.
+  Eigen::VectorXd largest_amplitudes() const;
 };
 
 /// Without the model's own effects; with the errors that the model leaves out (left_out.h), and last `own`,
@@ -70,6 +72,12 @@ struct FamilyTest {
   double gain = 0.0;          ///< LM - dof ln n: what the extended BIC compares; scanned shapes count as dof,
                               ///< and of independent components only those that raise it
 };
+
+/// Of a family's columns at a shape, which begin at `first`. Nothing is visible where an amplitude comes out
+/// larger than a model file takes, and of amplitudes that are one thing where one alone is not seen: a wave
+/// without its sine has no phase. `largest`: of the family.
+ScoreTest family_score(const Family& family, const ProjectedColumns& projected, Eigen::Index first,
+                       const Eigen::VectorXd& largest);
 
 /// What a family moves the readings by, at the shape and the amplitudes of its test; all observations, m or
 /// rad.

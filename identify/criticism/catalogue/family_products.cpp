@@ -45,8 +45,9 @@ std::vector<Hypothesis> all_shapes(const std::vector<Family>& families,
 
 /// Of the first columns alone, the amplitudes of the others zero.
 ScoreTest score_of_first(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index count,
-                         Eigen::Index all) {
-  ScoreTest test = score_test(projected, first, count);
+                         const Eigen::VectorXd& largest) {
+  const Eigen::Index all = largest.size();
+  ScoreTest test = score_test(projected, first, count, largest.head(count));
   test.amplitude.conservativeResizeLike(Eigen::VectorXd::Zero(all));
   test.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(all, all));
   test.gram.conservativeResizeLike(Eigen::MatrixXd::Zero(all, all));
@@ -58,12 +59,13 @@ ScoreTest score_of_first(const ProjectedColumns& projected, Eigen::Index first, 
 FamilyTest at_best_order(const ProjectedColumns& projected, const Family& family, std::size_t place,
                          Eigen::Index first, const Projector& projector) {
   FamilyTest best;
+  const Eigen::VectorXd largest = family.largest_amplitudes();
   for (const Eigen::Index order : family.orders) {
     FamilyTest test;
     test.family = place;
     test.multiplicity = static_cast<double>(family.orders.size());
     update_test(test, family, Eigen::VectorXd::Constant(1, static_cast<double>(order)),
-                score_of_first(projected, first, order, family.amplitudes()), projector);
+                score_of_first(projected, first, order, largest), projector);
     if (order == family.orders.front() || test.gain > best.gain) best = std::move(test);
   }
   return best;
@@ -73,12 +75,14 @@ FamilyTest at_best_shape(const ProjectedColumns& projected, const Family& family
                          Eigen::Index first, const Projector& projector) {
   if (!family.orders.empty()) return at_best_order(projected, family, place, first, projector);
   const Eigen::Index columns = family.amplitudes();
+  const Eigen::VectorXd largest = family.largest_amplitudes();
   FamilyTest best;
   best.family = place;
   best.shape = family.scan.front();
   std::vector<double> lm;
   for (std::size_t i = 0; i < family.scan.size(); ++i) {
-    const ScoreTest test = score_test(projected, first + static_cast<Eigen::Index>(i) * columns, columns);
+    const ScoreTest test =
+        family_score(family, projected, first + static_cast<Eigen::Index>(i) * columns, largest);
     lm.push_back(test.lm);
     if (i > 0 && test.lm <= best.score.lm) continue;
     best.score = test;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/model/description/rotary_places.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/functions/legendre_polynomials.h"
@@ -98,11 +99,13 @@ int lowest_degree(const Machine& machine, ErrorSymbol symbol) {
   return std::ranges::any_of(squareness_errors(machine), is_its_straight_part) ? 2 : 1;
 }
 
-/// Of rotary axes whole harmonics, cosine and sine together.
-std::vector<Eigen::Index> orders_of(ErrorSymbol symbol, std::size_t amplitudes) {
+/// Of rotary axes whole harmonics, cosine and sine together, as many as the places of the axis tell apart.
+std::vector<Eigen::Index> orders_of(const Campaign& campaign, ErrorSymbol symbol, std::size_t amplitudes) {
   std::vector<Eigen::Index> orders;
-  const auto most = static_cast<Eigen::Index>(amplitudes);
+  auto most = static_cast<Eigen::Index>(amplitudes);
   const Eigen::Index step = is_rotary(symbol.axis) ? 2 : 1;
+  if (is_rotary(symbol.axis))
+    most = std::min<Eigen::Index>(most, 2 * std::max(1, most_periods(places_in_turn(campaign, symbol.axis))));
   for (Eigen::Index order = step; order <= most; order += step) orders.push_back(order);
   return orders;
 }
@@ -190,7 +193,7 @@ std::vector<LeftOutError> left_out_errors(const MeasurementModel& model) {
   std::vector<LeftOutError> errors;
   for (const ErrorSymbol symbol : lacking_functions(model)) {
     std::unique_ptr<Effect> effect = function(campaign, symbol);
-    std::vector<Eigen::Index> orders = orders_of(symbol, effect->amplitudes().size());
+    std::vector<Eigen::Index> orders = orders_of(campaign, symbol, effect->amplitudes().size());
     errors.push_back({left_out_spec(symbol.name()), std::move(effect), std::move(orders)});
   }
   for (const LocationSymbol& location : locations_in_campaign(campaign)) {

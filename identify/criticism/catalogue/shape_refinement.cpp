@@ -43,7 +43,8 @@ bool is_better(const ScoreTest& one, const ScoreTest& other) {
 /// The search of one shape, which says at which values it wants to know what the readings see.
 class ShapeSearch {
  public:
-  ShapeSearch(const Family& family, FamilyTest& test) : family_(family), test_(test) {
+  ShapeSearch(const Family& family, FamilyTest& test)
+      : family_(family), test_(test), largest_(family.largest_amplitudes()) {
     if (family.scan.size() < 2 || test.shape.size() != 1 || test.score.dof == 0) return;
     const auto [low, high] = neighbours(family, test.shape[0]);
     low_ = low;
@@ -62,7 +63,7 @@ class ShapeSearch {
   /// Columns of the values that were wanted, from `first` on in a group of their own.
   void take(const ProjectedColumns& projected, Eigen::Index first, const Projector& projector) {
     const auto score = [&](Eigen::Index k) {
-      return score_test(projected, first + k * family_.amplitudes(), family_.amplitudes());
+      return family_score(family_, projected, first + k * family_.amplitudes(), largest_);
     };
     if (!begun_) return begin(projected.gram(first, columns()));
     if (wanted_.size() == 2) {
@@ -117,6 +118,7 @@ class ShapeSearch {
 
   const Family& family_;
   FamilyTest& test_;
+  Eigen::VectorXd largest_;
   std::vector<double> wanted_;
   bool begun_ = false, left_is_wanted_ = false;
   int steps_ = 0;

@@ -85,11 +85,11 @@ struct SurfaceFigure {
 struct FormulaFinding {
   std::string label;       ///< "EAY by y * z^2"
   EffectSpec spec;         ///< with its amplitude: can be put into a model file
-  double amplitude = 0.0;  ///< SI
+  double amplitude = 0.0;  ///< m or rad for an expression in the units of its variables
   double u = 0.0;
-  std::string unit;  ///< edge
-  double si_per_unit = 1.0;
-  std::string shape_text;  ///< "p = 120.3"; empty without parameters of its shape
+  std::string unit;          ///< edge, of the amplitude: "urad/mm3"
+  double si_per_unit = 1.0;  ///< of the target: 1e-6
+  std::string shape_text;    ///< "p = 120.3 mm"; empty without parameters of its shape
   double log_evidence = -std::numeric_limits<double>::infinity();  ///< natural, over the model without it
   double gain = 0.0;                                               ///< LM less its price, as of effects
   double log10_p = 0.0;                                            ///< all laws that were tried counted

@@ -151,6 +151,8 @@ struct Thresholds {
 
   /// Ratio of s^2. Less: no proposal.
   double helpful_gain = 1.05;
+  /// The same where the two make the same of the machine in the measured volume, so that a name alone is won.
+  double worth_a_name = 1.5;
   /// s^2 that a measurement must reach: one standard deviation. Less: nothing tells the two apart.
   double separated = 1.0;
   /// Ratio of s^2 by which a measurement for one pair must beat the one for all pairs, to be proposed beside

@@ -37,14 +37,19 @@ ElementaryFunction shifted_power(const DriverRange& driver, int exponent) {
             return exponent == 1 ? base : fmt::format("{}^{}", base, exponent);
           },
           [=](double value, const Shape& shape) { return std::pow(value - shape[0], exponent); },
-          places(driver)};
+          places(driver),
+          exponent,
+          {false}};
 }
 
 ElementaryFunction kink(const DriverRange& driver, const std::string& pattern, double (*at)(double beyond)) {
   return {[=, variable = driver.variable.written()](const Names& names) {
             return fmt::format(fmt::runtime(pattern), variable_less(variable, names[0]));
           },
-          [=](double value, const Shape& shape) { return at(value - shape[0]); }, places(driver)};
+          [=](double value, const Shape& shape) { return at(value - shape[0]); },
+          places(driver),
+          1,
+          {false}};
 }
 
 ElementaryFunction step(const DriverRange& driver) {
@@ -52,7 +57,9 @@ ElementaryFunction step(const DriverRange& driver) {
                                 return fmt::format("({} > {})", variable, names[0]);
                               },
                               [](double value, const Shape& shape) { return value > shape[0] ? 1.0 : 0.0; },
-                              places(driver)};
+                              places(driver),
+                              0,
+                              {false}};
   function.smooth_in_shape = false;
   return function;
 }
@@ -65,7 +72,10 @@ ElementaryFunction saturation(const DriverRange& driver) {
   return {[variable = driver.variable.written()](const Names& names) {
             return fmt::format("tanh(({}) / {})", variable_less(variable, names[0]), names[1]);
           },
-          [](double value, const Shape& shape) { return std::tanh((value - shape[0]) / shape[1]); }, starts};
+          [](double value, const Shape& shape) { return std::tanh((value - shape[0]) / shape[1]); },
+          starts,
+          0,
+          {false, true}};
 }
 
 ElementaryFunction wave(const DriverRange& driver) {
@@ -80,7 +90,9 @@ ElementaryFunction wave(const DriverRange& driver) {
           [](double value, const Shape& shape) {
             return std::sin(2.0 * std::numbers::pi * (value - shape[1]) / shape[0]);
           },
-          starts};
+          starts,
+          0,
+          {true, false}};
 }
 
 ElementaryFunction approach(const DriverRange& driver) {
@@ -89,7 +101,10 @@ ElementaryFunction approach(const DriverRange& driver) {
   return {[variable = driver.variable.written()](const Names& names) {
             return fmt::format("(1 - exp(-{} / {}))", variable, names[0]);
           },
-          [](double value, const Shape& shape) { return 1.0 - std::exp(-value / shape[0]); }, starts};
+          [](double value, const Shape& shape) { return 1.0 - std::exp(-value / shape[0]); },
+          starts,
+          0,
+          {true}};
 }
 
 }  // namespace
@@ -102,7 +117,8 @@ ElementaryFunction power_of(const Variable& variable, double zero, int exponent)
   const std::string base = from_zero(variable.written(), zero);
   return {[=](const Names&) { return exponent == 1 ? base : fmt::format("{}^{}", base, exponent); },
           [=](double value, const Shape&) { return std::pow(value - zero, exponent); },
-          {{}}};
+          {{}},
+          exponent};
 }
 
 std::vector<ElementaryFunction> elementary_functions(const DriverRange& driver, double zero) {

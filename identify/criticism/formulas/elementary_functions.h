@@ -25,8 +25,10 @@ struct ElementaryFunction {
   /// At a value of the variable.
   std::function<double(double value, const std::vector<double>& shape)> at;
   std::vector<std::vector<double>>
-      starts;                   ///< shapes from which it is looked for; one, empty, without a shape
-  bool smooth_in_shape = true;  ///< a derivative to its shape exists
+      starts;                      ///< shapes from which it is looked for; one, empty, without a shape
+  int power = 0;                   ///< of the variable's unit in its values
+  std::vector<bool> is_span = {};  ///< per parameter of its shape: a period or width, no place
+  bool smooth_in_shape = true;     ///< a derivative to its shape exists
 
   std::size_t shapes() const { return starts.front().size(); }
 };

@@ -252,14 +252,12 @@ class FormulaSearch {
   FormulaFinding finding(const Law& law) const {
     FormulaFinding finding;
     finding.spec = spec_of(law);
-    const char* name = "p";
-    for (std::size_t k = 0; k < law.shapes(); ++k, name = "q")
-      finding.shape_text += fmt::format("{}{} = {:.4g}", k > 0 ? ", " : "", name, law.shape[k]);
+    finding.shape_text = law.shape_text();
     const std::unique_ptr<Effect> effect = effect_of(law);
     const ScoreTest score = score_test(projected_effect(model_, projector_, *effect), 0, 1);
     const EffectAmplitude& amplitude = effect->amplitudes().front();
     finding.label = amplitude.label;
-    finding.unit = amplitude.unit();
+    finding.unit = law.amplitude_unit(amplitude.unit());
     finding.si_per_unit = amplitude.si_per_unit();
     if (score.dof == 0) return finding;
     finding.amplitude = score.amplitude[0];
@@ -284,6 +282,12 @@ class FormulaSearch {
   std::vector<std::vector<ElementaryFunction>> functions_;  ///< per driver
 };
 
+std::vector<std::string> sorted_names(const EffectSpec& surface, const std::string& key) {
+  std::vector<std::string> names = written_names(variables_in(surface.options.text(key).value_or("")));
+  std::ranges::sort(names);
+  return names;
+}
+
 bool acts_in_part(const EffectSpec& surface) { return surface.options.has("only"); }
 
 }  // namespace
@@ -304,6 +308,13 @@ std::vector<FormulaFinding> formulas_for(const ModelState& state, std::size_t su
   return findings;
 }
 
+bool is_same_function(const EffectSpec& surface, const EffectSpec& other) {
+  const EffectKind& kind = *find_effect("empirical");
+  return kind.make(surface, {})->name().target == kind.make(other, {})->name().target &&
+         sorted_names(surface, "drivers") == sorted_names(other, "drivers") &&
+         sorted_names(surface, "factor") == sorted_names(other, "factor");
+}
+
 void check_asked_surface(const LinearModel& model, const EffectSpec& surface) {
   if (acts_in_part(surface)) {
     throw InputError({}, "laws cannot be looked for where an effect acts in a part of the campaign alone",
@@ -320,7 +331,7 @@ AskedLaws asked_laws(const ModelState& state, const EffectSpec& surface) {
   std::shared_ptr<const Effect> effect = kind.make(spec, {});
   std::shared_ptr<const Projector> projector;
   for (const AddedSurface& drawn : state.surfaces()) {
-    if (drawn.effect->name() != effect->name()) continue;
+    if (!is_same_function(drawn.spec, spec)) continue;
     projector = state.projector_without_surface(drawn);
     spec = drawn.spec;
     effect = drawn.effect;

@@ -19,11 +19,16 @@ namespace volcal {
 /// Laws whose evidence reaches the surface's. `surface`: place among the state's.
 std::vector<FormulaFinding> formulas_for(const ModelState& state, std::size_t surface);
 
+/// Whether two effects of the kind `empirical` are functions of the same variables, whatever their order,
+/// with the same factors, on the same target.
+bool is_same_function(const EffectSpec& surface, const EffectSpec& other);
+
 /// Throws InputError where laws cannot be looked for behind a surface in a campaign.
 void check_asked_surface(const LinearModel& model, const EffectSpec& surface);
 
 /// The best laws of a target and drivers that the user names, whether or not they reach the surface's
-/// evidence. `surface`: of the kind `empirical`, checked.
+/// evidence; in the place of the surface of these variables where the state has one. `surface`: of the kind
+/// `empirical`, checked.
 AskedLaws asked_laws(const ModelState& state, const EffectSpec& surface);
 
 }  // namespace volcal

@@ -3,14 +3,44 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
 
 const std::vector<std::string> kShapeNames = {"p", "q"};
+
+/// A unit by its base units and their powers.
+using Powers = std::vector<std::pair<std::string, int>>;
+
+void add_power(Powers& powers, const std::string& unit, int power) {
+  if (unit.empty() || power == 0) return;
+  const auto known = std::ranges::find(powers, unit, &Powers::value_type::first);
+  if (known == powers.end()) {
+    powers.emplace_back(unit, power);
+  } else {
+    known->second += power;
+  }
+}
+
+/// Of a difference of two values: "K" of temperatures.
+Powers unit_of_difference(const Variable& variable) {
+  if (variable.kind == Variable::Kind::Temperature) return {{"K", 1}};
+  if (variable.kind == Variable::Kind::Feed) return {{"mm", 1}, {"min", -1}};
+  return {{unit_text(variable.unit().suffix), 1}};
+}
+
+std::string raised(const std::string& unit, int power) {
+  return power == 1 ? unit : unit + std::to_string(power);
+}
+
+std::string unit_of_shape(const Variable& variable, bool is_span) {
+  return is_span && variable.kind == Variable::Kind::Temperature ? "K" : unit_text(variable.unit().suffix);
+}
 
 /// LM of one column.
 double lm_of_column(double score, double square) { return square > 0.0 ? score * score / square : 0.0; }
@@ -41,6 +71,35 @@ std::string Law::expression() const {
     if (!part.empty()) parts.push_back(part);
   }
   return fmt::format("{}", fmt::join(parts, " * "));
+}
+
+std::string Law::amplitude_unit(const std::string& of_target) const {
+  Powers below;
+  for (const LawFactor& factor : factors) {
+    if (factor.function->power == 0) continue;
+    for (const auto& [unit, power] : unit_of_difference(factor.range->variable))
+      add_power(below, unit, power * factor.function->power);
+  }
+  std::string above = of_target, text;
+  for (const auto& [unit, power] : below) {
+    if (power < 0) above += " " + raised(unit, -power);
+    if (power > 0) text += "/" + raised(unit, power);
+  }
+  return above + text;
+}
+
+std::string Law::shape_text() const {
+  std::string text;
+  std::size_t at = 0;
+  for (const LawFactor& factor : factors) {
+    for (const bool is_span : factor.function->is_span) {
+      const std::string unit = unit_of_shape(factor.range->variable, is_span);
+      text += fmt::format("{}{} = {:.4g}{}{}", at > 0 ? ", " : "", kShapeNames[at], shape[at],
+                          unit.empty() ? "" : " ", unit);
+      ++at;
+    }
+  }
+  return text;
 }
 
 bool Law::smooth_in_shape() const {

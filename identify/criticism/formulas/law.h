@@ -29,6 +29,10 @@ struct Law {
   std::vector<double> shape_of(std::size_t factor) const;
   /// "y * (z - p)^2", parameters p and q in their order; what is 1 is left out.
   std::string expression() const;
+  /// Of its amplitude on a target in `of_target`: "um/mm2/K" of y^2 * (T_air - 20).
+  std::string amplitude_unit(const std::string& of_target) const;
+  /// "p = 120.3 mm, q = 4 K"; empty without parameters of its shape.
+  std::string shape_text() const;
   bool smooth_in_shape() const;
   /// Whether it depends on anything.
   bool depends() const;

@@ -154,6 +154,13 @@ LinearModel LinearModel::with_imitated_left_to_the_rest(const Eigen::MatrixXd& g
   return with_smoothing(std::move(smoothing));
 }
 
+Eigen::VectorXd LinearModel::imitated_unless_smoothed(const Eigen::MatrixXd& gram, std::size_t term,
+                                                      const Eigen::MatrixXd& functions) const {
+  const Eigen::Index count = gram.rows() - 1;
+  return volcal::imitated_unless_smoothed(gram.topLeftCorner(count, count), base_prior_of(count), smoothing_,
+                                          term, functions);
+}
+
 Eigen::VectorXd LinearModel::exact_residual_at(const Eigen::VectorXd& correction) const {
   MeasurementModel exact(campaign(), model().spec());
   const DatumSpace datum(exact.layout(), campaign().machine, exact.initial_parameters());

@@ -69,6 +69,10 @@ class LinearModel {
   /// What the rest of the model, and effects that were added to it, can imitate of surfaces is theirs. `gram`
   /// as for smoothed().
   LinearModel with_imitated_left_to_the_rest(const Eigen::MatrixXd& gram) const;
+  /// Shares of functions of the surface of a term of smoothing() (coefficients, one column each) that only
+  /// the smoothness of error functions keeps from these.
+  Eigen::VectorXd imitated_unless_smoothed(const Eigen::MatrixXd& gram, std::size_t term,
+                                           const Eigen::MatrixXd& functions) const;
   /// Of observations(), those that are left out as well.
   const std::vector<double>& stated_sigma() const { return fixed_->stated_sigma; }
   /// Of the fit's outlier test.

@@ -15,11 +15,13 @@ constexpr double kWorthExactTail = -2.0;  // log10 p: above, two moments do
 
 }  // namespace
 
-ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns) {
+ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns,
+                     const Eigen::VectorXd& largest) {
   ScoreTest test;
   test.amplitude = Eigen::VectorXd::Zero(columns);
   test.covariance = Eigen::MatrixXd::Zero(columns, columns);
-  const Eigen::VectorXd norm = projected.norm.segment(first, columns);
+  Eigen::VectorXd norm = projected.norm.segment(first, columns);
+  if (largest.size() > 0) norm = (norm.cwiseProduct(largest).array() < 1.0).select(0.0, norm);
   if (norm.maxCoeff() == 0.0) return test;
   const Eigen::VectorXd scale =
       norm.unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; });

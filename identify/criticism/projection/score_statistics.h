@@ -25,7 +25,10 @@ struct ScoreTest {
   Eigen::VectorXd score;  ///< g~^T r~
 };
 
-ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns);
+/// `largest`: of each |amplitude| that can be believed, SI; empty: any. A column that moves the readings by
+/// less than their noise even then is rounding, as the sine of a period is at its nodes, and is not visible.
+ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns,
+                     const Eigen::VectorXd& largest = {});
 
 /// The columns as a variance component, independent amplitudes of one variance (Lin 1997, Biometrika 84,
 /// 309): |s|^2 follows a sum of chi-squared variables weighted by the eigenvalues of G.

@@ -10,6 +10,7 @@
 
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/proposals/measurement_planner.h"
+#include "volcal/identify/statistics/normal.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
@@ -36,11 +37,7 @@ class Proposer {
 
   void run() {
     const std::vector<PlannedHypothesis> asked = asked_hypotheses();
-    std::vector<std::vector<PlannedHypothesis>> alternatives;
-    for (const auto* set : sets_of_alternatives(diagnosis_)) {
-      alternatives.push_back(of_findings(*set));
-      if (alternatives.back().size() < 2) alternatives.pop_back();
-    }
+    const std::vector<Alternatives> alternatives = open_sets();
     std::vector<PlannedHypothesis> invisible;
     if (diagnosis_.verdict == Verdict::NotVisible) invisible = invisible_hypotheses();
     if (asked.empty() && alternatives.empty() && invisible.empty()) return;
@@ -50,15 +47,35 @@ class Proposer {
                                             state_.model.noise_groups(), candidate_measurements(context));
     if (!asked.empty()) {
       const MeasurementPlanner planner = plan(asked, hypothetical);
-      separate(planner, hypothetical, asked, all_pairs(asked.size()));
+      separate(planner, hypothetical, {asked, nullptr}, all_pairs(asked.size()));
       make_visible(planner, hypothetical, asked);
     }
-    for (const auto& set : alternatives)
-      separate(plan(set, hypothetical), hypothetical, set, with_leading(set.size()));
+    for (const Alternatives& set : alternatives)
+      separate(plan(set.members, hypothetical), hypothetical, set, with_leading(set.members.size()));
     if (!invisible.empty()) make_visible(plan(invisible, hypothetical), hypothetical, invisible);
   }
 
  private:
+  /// What is to be told apart.
+  struct Alternatives {
+    std::vector<PlannedHypothesis> members;
+    const SetFinding*
+        same;  ///< of members that make the same of the volume; null: they do not, or nobody asked
+  };
+
+  std::vector<Alternatives> open_sets() const {
+    std::vector<Alternatives> open;
+    const auto sets = sets_of_alternatives(diagnosis_);
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+      std::vector<PlannedHypothesis> members = of_findings(*sets[i]);
+      if (members.size() < 2) continue;
+      const bool is_same =
+          i < diagnosis_.sets.size() && diagnosis_.sets[i].farthest && !diagnosis_.sets[i].matters;
+      open.push_back({std::move(members), is_same ? &diagnosis_.sets[i] : nullptr});
+    }
+    return open;
+  }
+
   const Family& family(const PlannedHypothesis& each) const {
     return state_.families[each.hypothesis.family];
   }
@@ -209,17 +226,17 @@ class Proposer {
 
   /// One measurement that serves all pairs, then others for pairs that have a much better one.
   void separate(const MeasurementPlanner& planner, const HypotheticalCampaign& hypothetical,
-                const std::vector<PlannedHypothesis>& hypotheses, const std::vector<Pair>& pairs) {
+                const Alternatives& set, const std::vector<Pair>& pairs) {
     if (pairs.empty() || planner.measurements() == 0) return;
     const std::size_t common = best_for(planner, hypothetical, pairs);
-    propose(planner, hypothetical, hypotheses, nearest(planner, planner.now(), pairs).first, common);
+    propose(planner, hypothetical, set, nearest(planner, planner.now(), pairs).first, common);
     for (const Pair& pair : pairs) {
       const std::size_t own = best_for(planner, hypothetical, {pair});
       const auto reached = [&](std::size_t i) {
         return planner.separation(planner.with(i), pair.first, pair.second);
       };
       if (own != common && reached(own) > kThresholds.much_better * reached(common)) {
-        propose(planner, hypothetical, hypotheses, pair, own);
+        propose(planner, hypothetical, set, pair, own);
       }
     }
   }
@@ -232,14 +249,24 @@ class Proposer {
     return after > 0.0 ? std::numeric_limits<double>::infinity() : 1.0;
   }
 
+  /// That none separates the two, and where it makes no difference to the machine that it makes none.
+  static Finding none_separates(const std::vector<std::string>& both, const SetFinding* same) {
+    Finding finding{FindingCode::MeasurementNoneSeparates, {{"effects", both}}};
+    if (same == nullptr) return finding;
+    const MemberFinding& farthest = same->members[*same->farthest];
+    finding.data["difference"] = FindingNumber{farthest.difference, "um", kMicro};
+    finding.data["U"] = FindingNumber{kCoverageFactor * farthest.difference_u, "um", kMicro};
+    return finding;
+  }
+
   void propose(const MeasurementPlanner& planner, const HypotheticalCampaign& hypothetical,
-               const std::vector<PlannedHypothesis>& hypotheses, Pair pair, std::size_t measurement) {
+               const Alternatives& set, Pair pair, std::size_t measurement) {
     if (diagnosis_.proposals.size() == kMostProposals) return;
     const auto apart = [&](const ProjectedHypotheses& where) {
       return planner.separation(where, pair.first, pair.second);
     };
-    const PlannedHypothesis& first = hypotheses[pair.first];
-    const PlannedHypothesis& second = hypotheses[pair.second];
+    const PlannedHypothesis& first = set.members[pair.first];
+    const PlannedHypothesis& second = set.members[pair.second];
     MeasurementProposal out;
     out.separates = {family(first).name(), family(second).name()};
     out.separation = something(apart(planner.now()));
@@ -248,10 +275,11 @@ class Proposer {
     out.gain = ratio(out.reached, out.separation);
     out.plain_gain = ratio(out.plain, out.separation);
     const std::vector<std::string> both = {described(first), described(second)};
-    if (out.gain < kThresholds.helpful_gain || out.reached < kThresholds.separated) {
+    const double enough = set.same != nullptr ? kThresholds.worth_a_name : kThresholds.helpful_gain;
+    if (out.gain < enough || out.reached < kThresholds.separated) {
       out.gain = out.plain_gain = 1.0;
       out.reached = out.plain = out.separation;
-      out.finding = {FindingCode::MeasurementNoneSeparates, {{"effects", both}}};
+      out.finding = none_separates(both, set.same);
     } else {
       set_measurement(FindingCode::MeasurementSeparates, hypothetical.measurements()[measurement], out);
       out.finding.data["effects"] = both;

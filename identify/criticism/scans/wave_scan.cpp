@@ -19,6 +19,8 @@ constexpr double kBin = kFinestWave / 2.0;
 constexpr std::size_t kPadding = 2;  // half a period over the range between neighbouring frequencies
 constexpr std::size_t kPeaks = 3;    // that are projected
 constexpr int kRefined = 4;          // steps between neighbouring frequencies
+constexpr int kCosineAndSine = 2;
+constexpr double kLargestWave = 1e-2;  // m
 
 using Spectrum = std::vector<std::complex<double>>;
 
@@ -140,9 +142,10 @@ WaveTest best_wave(const Projector& projector, const Eigen::VectorXd& q, const E
   const double by_noise = 2.0 * projected.grams.front().diagonal().mean();  // of the power
   const double inflation = std::max(1.0, mean_power / by_noise);
   for (Eigen::Index k = 0; k < count; ++k) {
-    const ScoreTest test = score_test(projected, 2 * k, 2);
+    const ScoreTest test = score_test(projected, kCosineAndSine * k, kCosineAndSine,
+                                      Eigen::VectorXd::Constant(kCosineAndSine, kLargestWave));
     const double lm = test.lm / inflation;
-    if (test.dof == 0 || lm <= best.lm) continue;
+    if (test.dof < kCosineAndSine || lm <= best.lm) continue;
     best.period = 1.0 / frequencies[static_cast<std::size_t>(k)];
     best.lm = lm;
     best.projected_lm = test.lm;

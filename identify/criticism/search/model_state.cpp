@@ -24,11 +24,24 @@ void append_columns(const Eigen::MatrixXd& more, Eigen::MatrixXd& all) {
   all.rightCols(more.cols()) = more;
 }
 
+namespace {
+
+/// Columns of amplitudes that the test of a visible effect does not see are rounding.
+void clear_unseen(const ScoreTest& score, Eigen::MatrixXd& columns) {
+  if (score.dof == 0) return;
+  for (Eigen::Index k = 0; k < std::min(columns.cols(), score.covariance.cols()); ++k) {
+    if (score.covariance(k, k) == 0.0) columns.col(k).setZero();
+  }
+}
+
+}  // namespace
+
 Eigen::MatrixXd accept(const LinearModel& model, const Family& family, const FamilyTest& effect,
                        Projector& projector) {
   Eigen::MatrixXd columns = family_columns(model, family, effect.shape);
   if (!family.orders.empty())
     columns.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(effect.shape[0]));
+  clear_unseen(effect.score, columns);
   projector.accept(columns);
   const auto derivative = shape_derivative(model, family, effect.shape, effect.score.amplitude);
   if (!derivative) return columns;
@@ -330,7 +343,8 @@ bool ModelState::refine_shape_of_last() {
   const auto projector = projector_without({added_.size() - 1});
   FamilyTest again = last.test;
   const ScoreTest score =
-      score_test(projector->project(family_columns(model_, family, again.shape)), 0, family.amplitudes());
+      family_score(family, projector->project(family_columns(model_, family, again.shape)), 0,
+                   family.largest_amplitudes());
   update_test(again, family, again.shape, score, *projector);
   refine_shape(model_, family, *projector, again);
   if (again.shape == last.test.shape) return false;

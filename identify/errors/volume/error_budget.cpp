@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "volcal/identify/errors/error_grid.h"
@@ -17,6 +19,8 @@ namespace {
 using Eigen::Vector3d;
 using Field = std::vector<Vector3d>;
 
+constexpr const char* kCauseOfRotaryAxes = "rotary axes";
+
 std::string cause_of(const Contribution& part) {
   switch (part.kind) {
     case ContributionKind::Expansion:
@@ -27,13 +31,13 @@ std::string cause_of(const Contribution& part) {
       return "tool";
     case ContributionKind::Location: {
       const auto symbol = LocationSymbol::parse(part.name);
-      return symbol && is_rotary(symbol->axis) ? "rotary axes" : "squareness";
+      return symbol && is_rotary(symbol->axis) ? kCauseOfRotaryAxes : "squareness";
     }
     case ContributionKind::Function:
       break;
   }
   const ErrorSymbol symbol = *ErrorSymbol::parse(part.name);
-  if (is_rotary(symbol.axis)) return "rotary axes";
+  if (is_rotary(symbol.axis)) return kCauseOfRotaryAxes;
   if (symbol.is_positioning()) return "positioning";
   return symbol.is_straightness() ? "straightness" : "angular errors";
 }
@@ -56,14 +60,63 @@ std::vector<AxisPosition> with_parallel_positions(const Machine& machine, int pe
   return positions;
 }
 
+/// The axis of an error of a rotary axis.
+std::optional<AxisName> rotary_axis_of(const Contribution& part) {
+  if (const auto symbol = ErrorSymbol::parse(part.name); symbol && is_rotary(symbol->axis))
+    return symbol->axis;
+  const auto location = LocationSymbol::parse(part.name);
+  return location && is_rotary(location->axis) ? std::optional(location->axis) : std::nullopt;
+}
+
+/// Positions of rotary axes, one set after another, spread evenly and without a period in common with a grid
+/// of other axes: multiples of powers of the inverse of the root of x^7 = x + 1, less whole numbers (additive
+/// recurrence). Every axis is approached from either side as often.
+class SpreadRotaryAxes {
+ public:
+  SpreadRotaryAxes(const Machine& machine, std::vector<AxisName> axes)
+      : machine_(machine), axes_(std::move(axes)) {
+    double root = 1.0;
+    for (int k = 0; k < kIterations; ++k) root = std::pow(1.0 + root, 1.0 / kPower);
+    step_ = 1.0 / root;
+  }
+  const std::vector<AxisName>& axes() const { return axes_; }
+
+  void place(std::size_t number, AxisPosition& position, ApproachDirection& direction) const {
+    double step = 1.0;
+    const auto next = [&] {
+      step *= step_;
+      const double share = 0.5 + static_cast<double>(number) * step;
+      return share - std::floor(share);
+    };
+    for (const AxisName name : axes_) {
+      const Axis& axis = machine_.axis(name);
+      const double span = std::min(axis.travel(), 2.0 * std::numbers::pi);
+      position[index_of(name)] = axis.travel_min + next() * span;
+      direction[index_of(name)] = next() < 0.5 ? -1 : 1;
+    }
+  }
+
+ private:
+  static constexpr double kPower = 7.0;  // one more than dimensions: position and approach of three axes
+  static constexpr int kIterations = 60;
+
+  const Machine& machine_;
+  std::vector<AxisName> axes_;
+  double step_ = 0.0;
+};
+
 /// The displacements of every contribution at the poses of the volume.
 class VolumeOfParts {
  public:
-  VolumeOfParts(const FitResult& result, const Tool& tool, const Conditions& conditions, int per_axis)
+  VolumeOfParts(const FitResult& result, const Tool& tool, const Conditions& conditions, int per_axis,
+                RotaryPoses rotary)
       : result_(result),
         is_uncertain_(!result.covariance.isZero(0.0)),
         field_(result, tool, conditions),
-        parts_(field_.contributions()) {
+        parts_(field_.contributions()),
+        chain_(result.machine),
+        offset_t_(tool.offset),
+        turned_(result.machine, rotary == RotaryPoses::AtRest ? std::vector<AxisName>() : with_errors()) {
     fields_.resize(parts_.size());
     VolumeMoments moments(result.parameters.size());
     std::vector<AxisName> axes(kLinearAxes.begin(), kLinearAxes.end());
@@ -73,13 +126,16 @@ class VolumeOfParts {
         ApproachDirection direction{};
         for (std::size_t i = 0; i < axes.size(); ++i)
           direction[index_of(axes[i])] = ((signs >> i) & 1U) != 0 ? 1 : -1;
-        add(position, direction, moments);
+        AxisPosition pose = position;
+        turned_.place(points_.size(), pose, direction);
+        add(pose, direction, moments);
       }
     }
     if (is_uncertain_) moments_ = moments.mean();
   }
 
   const std::vector<Contribution>& parts() const { return parts_; }
+  const std::vector<AxisName>& turned() const { return turned_.axes(); }
   Field field(std::size_t part) const { return without_rigid_motion(points_, fields_[part]); }
   std::size_t size() const { return points_.size(); }
 
@@ -97,8 +153,22 @@ class VolumeOfParts {
   }
 
  private:
+  std::vector<AxisName> with_errors() const {
+    std::vector<AxisName> axes;
+    for (const Contribution& part : parts_) {
+      const auto axis = rotary_axis_of(part);
+      if (axis && std::ranges::find(axes, *axis) == axes.end()) axes.push_back(*axis);
+    }
+    std::ranges::sort(axes);
+    return axes;
+  }
+
   void add(const AxisPosition& position, const ApproachDirection& direction, VolumeMoments& moments) {
-    points_.emplace_back(position[0], position[1], position[2]);
+    if (turned().empty()) {
+      points_.emplace_back(position[0], position[1], position[2]);
+    } else {
+      points_.push_back(chain_.nominal_point_w(position, offset_t_));
+    }
     const Eigen::Matrix<double, 3, Eigen::Dynamic> rows = field_.rows(position, direction).topRows<3>();
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       Vector3d displacement = Vector3d::Zero();
@@ -115,6 +185,9 @@ class VolumeOfParts {
   bool is_uncertain_;
   ErrorField field_;
   std::vector<Contribution> parts_;
+  KinematicChain chain_;
+  Vector3d offset_t_;
+  SpreadRotaryAxes turned_;
   Field points_;
   std::vector<Field> fields_;
   Eigen::MatrixXd moments_;
@@ -174,8 +247,8 @@ struct Together {
 }  // namespace
 
 ErrorBudget error_budget(const FitResult& result, const Tool& tool, const Conditions& conditions,
-                         int per_axis) {
-  const VolumeOfParts volume(result, tool, conditions, per_axis);
+                         int per_axis, RotaryPoses rotary) {
+  const VolumeOfParts volume(result, tool, conditions, per_axis, rotary);
   Together whole;
   whole.field.assign(volume.size(), Vector3d::Zero());
   std::map<std::string, Together> by_cause;
@@ -187,6 +260,11 @@ ErrorBudget error_budget(const FitResult& result, const Tool& tool, const Condit
     by_cause[cause_of(part)].add(fields.back(), part.parameters);
   }
   ErrorBudget budget;
+  budget.turned = volume.turned();
+  for (const Axis& axis : result.machine.axes) {
+    if (is_rotary(axis.name) && std::ranges::find(budget.turned, axis.name) == budget.turned.end())
+      budget.at_rest.push_back(axis.name);
+  }
   const auto line = [&](const std::string& name, const Field& field, const std::vector<int>& parameters) {
     BudgetLine made = line_of(name, field, whole.field);
     made.u_rms = volume.u_rms(parameters);

@@ -1,7 +1,8 @@
 #pragma once
 /// Which error contributes how much to the error of the volume: every contribution of the error field over
-/// the travel of the linear axes, approached from both sides, after the best rigid motion, which a frame's
-/// alignment takes up (ISO/TR 16907:2015, 11; the error budget of Slocum).
+/// the travel of the linear axes, approached from both sides, and of the rotary axes that were identified,
+/// after the best rigid motion in workpiece coordinates, which a frame's alignment takes up (ISO/TR
+/// 16907:2015, 11; the error budget of Slocum).
 ///
 /// Shares are <e_c, e> / <e, e> over the volume, e the whole error: they sum to 1, and a contribution that
 /// cancels part of the others has a negative one. Uncertainties are of the same displacements, correlations
@@ -39,10 +40,19 @@ struct ErrorBudget {
   /// RMS of the whole error that 95 % of such machines do not exceed, m: of normally distributed parameters
   /// whose expectation is no error; 0 where there is an expected error or no uncertainty.
   double rms_95 = 0.0;
+  std::vector<AxisName> turned;   ///< rotary axes over whose travel it is
+  std::vector<AxisName> at_rest;  ///< rotary axes at 0 in all poses, whose errors away from 0 are not in it
 };
 
-/// `per_axis` positions on every linear axis, ends of travel included; rotary axes at 0.
+/// Where rotary axes stand in the poses of a budget.
+enum class RotaryPoses {
+  AtRest,     ///< at 0, as tables of linear axes take them
+  OverTravel  ///< those with errors over their travel, a turn at most; others at 0
+};
+
+/// `per_axis` positions on every linear axis, ends of travel included. Rotary axes take a position of their
+/// own at each of these poses and directions of approach, spread evenly over their travel.
 ErrorBudget error_budget(const FitResult& result, const Tool& tool, const Conditions& conditions,
-                         int per_axis);
+                         int per_axis, RotaryPoses rotary = RotaryPoses::OverTravel);
 
 }  // namespace volcal

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "volcal/identify/io/campaign/doubtful_angles.h"
 #include "volcal/identify/io/campaign/reading_columns.h"
 #include "volcal/identify/standards/approach.h"
 #include "volcal/model/description/finding_codes.h"
@@ -134,6 +135,7 @@ std::vector<Finding> doubts_of(const Setup& setup, const Machine& machine) {
   add(repeated_rows(setup.readings));
   for (const Axis& axis : machine.axes) add(against_order(setup.readings, axis.name));
   add(doubtful_time(setup.readings));
+  add(doubtful_angles(setup, machine));
   return doubts;
 }
 

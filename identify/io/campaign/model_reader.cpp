@@ -12,6 +12,7 @@
 #include "volcal/identify/text/toml_document.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 
@@ -112,10 +113,11 @@ class ModelReader {
       table.fail("basis",
                  table.path() + ": the basis \"" + spec.basis + "\" does not fit " +
                      (is_rotary(symbol.axis) ? "a rotary axis" : "a linear axis"),
-                 "choose one of " + join_names(basis_names()));
+                 "choose one of " + bases_for(symbol));
     }
     read_breakpoints(table, axis, kind, spec);
     read_coefficients(table, symbol, axis, kind, spec);
+    read_smoothed(table, kind, spec);
     return spec;
   }
 
@@ -219,6 +221,17 @@ class ModelReader {
     }
   }
 
+  static void read_smoothed(const TomlTable& table, const BasisKind& kind, FunctionSpec& spec) {
+    spec.smoothed = table.boolean("smoothed").value_or(false);
+    if (!spec.smoothed) return;
+    if (!kind.uses_knots && !kind.has_automatic_degree)
+      table.fail("smoothed", table.path() + ": the basis \"" + std::string(kind.name) + "\" is not smoothed",
+                 "remove smoothed, or choose basis = \"bspline\"");
+    if (spec.coefficients.empty())
+      table.fail("smoothed", table.path() + ".smoothed is about identified coefficients",
+                 "remove it: functions with knots = \"auto\" or degree = \"auto\" are smoothed");
+  }
+
   static std::size_t basis_size(const TomlTable& table, const Axis& axis, const BasisKind& kind,
                                 const FunctionSpec& spec) {
     try {
@@ -226,6 +239,14 @@ class ModelReader {
     } catch (const std::invalid_argument& error) {
       table.fail("basis", table.path() + ": " + error.what(), "see the documentation of the basis");
     }
+  }
+
+  static std::string bases_for(ErrorSymbol symbol) {
+    std::vector<std::string> names;
+    for (const BasisKind* kind : basis_kinds()) {
+      if (is_rotary(symbol.axis) ? kind->rotary_axes : kind->linear_axes) names.emplace_back(kind->name);
+    }
+    return join_names(names);
   }
 
   /// The default basis must fit every axis of which a function is left to it.
@@ -236,7 +257,7 @@ class ModelReader {
       if (fits || spec_.functions.contains(symbol)) continue;
       root_.fail("functions",
                  "the default basis \"" + spec_.default_function.basis + "\" does not fit " + symbol.name(),
-                 "give " + symbol.name() + " its own basis");
+                 "give " + symbol.name() + " its own basis, one of " + bases_for(symbol));
     }
   }
 
@@ -289,6 +310,22 @@ class ModelReader {
                     "write [FIRST, LAST]");
       spec_.measured[axis.name] = {ends->front(), ends->back()};
     }
+    for (const std::string& key : table->keys()) read_condition(*table, key);
+  }
+
+  /// "T_column_degC = [18.9, 21.4, 24.1]"
+  void read_condition(const TomlTable& table, const std::string& key) {
+    const auto variable = Variable::parse_column(key);
+    if (!variable || !variable->changes_at_rest()) return;
+    const std::vector<double> values = table.required_numbers(key);
+    if (values.size() != 3 || !(values[0] <= values[1] && values[1] <= values[2]))
+      table.fail(key, "measured." + printable(key) + " is not the least, mean and greatest value",
+                 "write [LEAST, MEAN, GREATEST]");
+    const RecordedRange range{values[0], values[1], values[2]};
+    if (variable->kind == Variable::Kind::Temperature)
+      spec_.conditions.temperature_degC[variable->subject] = range;
+    if (variable->kind == Variable::Kind::Time) spec_.conditions.time = range;
+    if (variable->kind == Variable::Kind::Feed) spec_.conditions.feed = range;
   }
 
   void fail_location(const TomlTable& table, const std::string& key,

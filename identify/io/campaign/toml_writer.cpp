@@ -15,6 +15,7 @@
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 
@@ -77,6 +78,7 @@ std::string function_toml(const FunctionSpec& spec, std::optional<ErrorSymbol> s
     text +=
         fmt::format(", coefficients_{} = {}", edge_unit(symbol->component), array(spec.coefficients, kMicro));
   }
+  if (spec.smoothed) text += ", smoothed = true";
   return text + " }";
 }
 
@@ -107,10 +109,20 @@ std::string measured_toml(const ModelSpec& spec) {
   std::string text;
   for (const auto& [axis, ends] : spec.measured) {
     const Unit unit = position_unit(axis);
-    text += fmt::format("{}{}_{} = {}\n", text.empty() ? "\n[measured]\n" : "", letter_of(axis), unit.suffix,
+    text += fmt::format("{}_{} = {}\n", letter_of(axis), unit.suffix,
                         array(std::vector<double>{ends.first, ends.second}, unit.si_per_unit));
   }
-  return text;
+  const auto add = [&text](const Variable& variable, const RecordedRange& range) {
+    const std::string column = variable.column();
+    const bool plain = channel_variable(column) == "T_" + column;
+    text += fmt::format(
+        "{} = {}  # least, mean, greatest\n", plain ? column : toml_text(column),
+        array(std::vector<double>{range.min, range.mean, range.max}, unit_of_key(column).si_per_unit));
+  };
+  for (const auto& [channel, range] : spec.conditions.temperature_degC) add(temperature_of(channel), range);
+  if (spec.conditions.time) add({Variable::Kind::Time}, *spec.conditions.time);
+  if (spec.conditions.feed) add({Variable::Kind::Feed}, *spec.conditions.feed);
+  return text.empty() ? text : "\n[measured]\n" + text;
 }
 
 }  // namespace
@@ -126,7 +138,8 @@ std::string effect_toml(const EffectSpec& effect) {
     const double factor = unit_of_key(key.key).si_per_unit;
     std::optional<std::string> value;
     if (const auto number = effect.options.number(stem); number && key.type == KeyType::Number) {
-      value = edge_number(*number, factor);
+      const bool is_none = std::abs(*number) < key.plausible_min * factor;  // the reader believes 0 instead
+      value = edge_number(is_none ? 0.0 : *number, factor);
     } else if (const auto words = effect.options.text(stem); words && key.type == KeyType::Text) {
       value = toml_text(*words);
     } else if (const auto flag = effect.options.boolean(stem); flag && key.type == KeyType::Boolean) {

@@ -78,7 +78,7 @@ FormulaFinding formula_from(const Json& json) {
   FormulaFinding formula;
   formula.label = text(json, "label");
   formula.unit = text(json, "unit");
-  formula.si_per_unit = si_per_unit(formula.unit);
+  formula.si_per_unit = si_per_unit(formula.unit.substr(0, formula.unit.find_first_of(" /")));
   formula.amplitude = number_or_nan(json, "amplitude") * formula.si_per_unit;
   formula.u = number_or_nan(json, "u") * formula.si_per_unit;
   formula.shape_text = text(json, "shape_value");

@@ -112,6 +112,7 @@ Json function_json(const FunctionSpec& spec) {
                {"breakpoints", numbers(spec.breakpoints)},
                {"coefficients", numbers(spec.coefficients)}};
   if (spec.automatic_degree) json["automatic_degree"] = true;
+  if (spec.smoothed) json["smoothed"] = true;
   return json;
 }
 
@@ -120,6 +121,7 @@ FunctionSpec function_from(const Json& json) {
   spec.basis = json.at("basis").get<std::string>();
   spec.degree = json.at("degree").get<int>();
   spec.automatic_degree = json.value("automatic_degree", false);
+  spec.smoothed = json.value("smoothed", false);
   spec.knots = value_in(kKnotChoices, json.at("knots"));
   spec.intervals = json.at("intervals").get<int>();
   spec.breakpoints = numbers_from(json.at("breakpoints"));

@@ -80,6 +80,30 @@ nlohmann::ordered_json design_line_json(const BudgetLine& line, const Tolerances
   return json;
 }
 
+std::string letters(const std::vector<AxisName>& axes) {
+  std::string text;
+  for (const AxisName axis : axes) text += (text.empty() ? "" : ", ") + std::string(1, letter_of(axis));
+  return text;
+}
+
+/// Over which positions of rotary axes the budget is, and what of their errors is not in it.
+std::string rotary_axes_text(const ErrorBudget& budget, const std::string& why_at_rest) {
+  std::string text;
+  if (!budget.turned.empty())
+    text += fmt::format("over the travel of {} as well, a turn at most, in workpiece coordinates\n",
+                        letters(budget.turned));
+  if (!budget.at_rest.empty())
+    text +=
+        fmt::format("! {} at 0 in all poses: {}, and are not in it\n", letters(budget.at_rest), why_at_rest);
+  return text;
+}
+
+nlohmann::ordered_json letters_json(const std::vector<AxisName>& axes) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const AxisName axis : axes) json.push_back(std::string(1, letter_of(axis)));
+  return json;
+}
+
 }  // namespace
 
 std::string design_budget_text(const ErrorBudget& budget, const Machine& machine,
@@ -100,6 +124,7 @@ std::string design_budget_text(const ErrorBudget& budget, const Machine& machine
     text += fmt::format("RMS of the volume that 95 % of such machines do not exceed: {} um\n",
                         fixed_number(budget.rms_95 / kMicro, 2));
   text += "u = tolerance / (2 sqrt 3); over the travel a slope and two waves, straightness two waves\n";
+  text += rotary_axes_text(budget, "their errors have no tolerance");
   const auto missing = without_tolerance(machine, tolerances);
   if (!missing.empty())
     text += fmt::format("! without a tolerance, counted as free of error: {}\n", fmt::join(missing, ", "));
@@ -116,6 +141,7 @@ nlohmann::ordered_json design_budget_json(const ErrorBudget& budget, const Machi
   for (const BudgetLine& line : budget.contributions)
     json["contributions"].push_back(design_line_json(line, tolerances));
   json["without_tolerance"] = without_tolerance(machine, tolerances);
+  json["rotary_axes_at_0"] = letters_json(budget.at_rest);
   return json;
 }
 
@@ -134,7 +160,7 @@ std::string error_budget_text(const ErrorBudget& budget, const std::string& tool
   std::string text = causes.text() + parts.text();
   if (shown < budget.contributions.size())
     text += fmt::format("{} smaller ones: --verbose\n", budget.contributions.size() - shown);
-  return text;
+  return text + rotary_axes_text(budget, "their errors were not identified");
 }
 
 nlohmann::ordered_json error_budget_json(const ErrorBudget& budget) {
@@ -143,6 +169,8 @@ nlohmann::ordered_json error_budget_json(const ErrorBudget& budget) {
   json["contributions"] = nlohmann::ordered_json::array();
   for (const BudgetLine& line : budget.causes) json["causes"].push_back(line_json(line));
   for (const BudgetLine& line : budget.contributions) json["contributions"].push_back(line_json(line));
+  json["rotary_axes_turned"] = letters_json(budget.turned);
+  json["rotary_axes_at_0"] = letters_json(budget.at_rest);
   return json;
 }
 

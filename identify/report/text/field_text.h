@@ -9,11 +9,14 @@
 namespace volcal {
 
 /// One line, "Stated for T_column 23.34 degC (mean of the campaign), ..."; empty where the result's errors
-/// depend on no condition.
+/// depend on no condition; below it what the user stated in vain or beyond the readings.
 std::string conditions_text(const FitResult& result, const Conditions& conditions);
 nlohmann::ordered_json conditions_json(const FitResult& result, const Conditions& conditions);
 
-/// Throws InputError where an axis was measured over a part of its travel.
-void require_measured_travel(const FitResult& result);
+/// Throws InputError where an axis was measured over a part of its travel, or where the conditions lie beyond
+/// those of the readings.
+void require_within_readings(const FitResult& result, const Conditions& conditions);
+/// Throws InputError where the conditions lie beyond those of the readings.
+void require_conditions_of_readings(const FitResult& result, const Conditions& conditions);
 
 }  // namespace volcal

@@ -10,9 +10,9 @@
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/report/values/drawn_surfaces.h"
 #include "volcal/identify/report/values/error_range.h"
 #include "volcal/identify/report/values/residual_sample.h"
-#include "volcal/identify/report/values/surface_values.h"
 #include "volcal/identify/words/noise_words.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
@@ -85,7 +85,7 @@ std::string errors_table(const FitResult& result) {
                   error.visible ? "" : "NOT VISIBLE"});
   }
   std::string surfaces;
-  for (const report::SurfaceValues& surface : report::surface_values(result))
+  for (const SurfaceValues& surface : surface_values(result))
     surfaces += "  " + report::surface_line(surface, result.coverage_factor) + "\n";
   return text.text() + surfaces;
 }
@@ -248,7 +248,7 @@ std::string effects_lines(const FitResult& result) {
   }
   if (more > 0)
     text += fmt::format("  and {} more amplitude{} of effects (--verbose)\n", more, more == 1 ? "" : "s");
-  for (const report::SurfaceValues& surface : report::surface_values(result))
+  for (const SurfaceValues& surface : surface_values(result))
     text += "  " + report::surface_line(surface, result.coverage_factor) + "\n";
   return text;
 }

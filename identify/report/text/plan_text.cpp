@@ -310,7 +310,7 @@ std::string replaced_words(const CampaignPlan& plan) {
 std::string plan_text(const CampaignPlan& plan) {
   return plan_head(plan) + "\n" + layout_table(plan) + "\n" + figures_table(plan) + "\n" + verdict(plan) +
          "\n" + planned_errors_table(plan) + "\n" + planned_effects_table(plan) + invisible_text(plan) +
-         options_table(plan) + findings_text(plan.notes);
+         options_table(plan) + findings_text(plan.findings) + findings_text(plan.notes);
 }
 
 }  // namespace volcal

@@ -120,6 +120,25 @@ std::vector<std::vector<double>> measured_positions(const Campaign& campaign,
   return drawn;
 }
 
+std::vector<CarriedDisplacement> carried_displacements(const FitResult& result) {
+  std::vector<CarriedDisplacement> all;
+  const Joint* carrying = nullptr;
+  for (const Joint& joint : result.machine.structure.joints) {
+    if (!is_rotary(joint.axis) || joint.workpiece_side) continue;
+    if (carrying != nullptr && direction_of(carrying->axis) != direction_of(joint.axis)) {
+      CarriedDisplacement carried{carrying->axis, joint.axis, {}};
+      for (const Component component : {Component::X, Component::Y, Component::Z}) {
+        const ErrorSymbol motion{component, carrying->axis};
+        if (direction_of(component) != direction_of(motion.axis) && result.layout.find(motion))
+          carried.motions.push_back(motion);
+      }
+      if (!carried.motions.empty()) all.push_back(std::move(carried));
+    }
+    carrying = &joint;
+  }
+  return all;
+}
+
 }  // namespace
 
 double RotaryMotion::range() const {
@@ -141,6 +160,7 @@ std::optional<RotaryPictures> rotary_pictures(const FitResult& result, const Cam
   pictures.reach = reach_of(result.machine);
   pictures.motions = motions_of(result);
   pictures.lines = lines_of(result);
+  pictures.carried = carried_displacements(result);
   const Eigen::Vector3d point_w = middle_point_w(result.machine, result.machine.tools.front());
   for (std::size_t i = 0; i < std::min(kMostTools, result.machine.tools.size()); ++i)
     pictures.maps.push_back(

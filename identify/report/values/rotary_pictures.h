@@ -35,12 +35,21 @@ struct RotaryLine {
   std::vector<LocationSymbol> not_visible;           ///< location errors that the readings do not determine
 };
 
+/// An inner axis of a head, displaced along itself, turns with the axis that carries it: no location error
+/// holds that, and error motions of the carrying axis have it as one wave a turn.
+struct CarriedDisplacement {
+  AxisName carrying = AxisName::C;
+  AxisName carried = AxisName::B;
+  std::vector<ErrorSymbol> motions;
+};
+
 struct RotaryPictures {
   double coverage_factor = kCoverageFactor;
   double reach = 0.0;  ///< length, m, to which axis lines are drawn either way from their centres
   std::vector<RotaryMotion> motions;
   std::vector<RotaryLine> lines;
-  std::vector<RotaryMap> maps;  ///< one per tool, of the first tools
+  std::vector<CarriedDisplacement> carried;  ///< between identified axes
+  std::vector<RotaryMap> maps;               ///< one per tool, of the first tools
   /// Positions of the maps' axes at which readings were taken, at most some hundreds.
   std::vector<std::vector<double>> measured;
 };

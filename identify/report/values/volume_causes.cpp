@@ -84,7 +84,8 @@ VolumeCauses volume_causes(const FitResult& given, std::span<const EffectFinding
   VolumeCauses result;
   const FitResult extended = extended_result(given, added);
   const Tool& tool = extended.machine.tools.front();
-  const ErrorBudget budget = error_budget(extended, tool, default_conditions(extended), kPositionsPerAxis);
+  const ErrorBudget budget =
+      error_budget(extended, tool, default_conditions(extended), kPositionsPerAxis, RotaryPoses::AtRest);
   result.tool = tool.name;
   result.total_rms = budget.total.rms;
   for (const BudgetLine& line : budget.contributions) {

@@ -57,7 +57,7 @@ std::vector<ToolVolume> tool_volumes(const FitResult& result, int per_axis) {
           field.unheld_rows(position).topRows<3>();
       errors.emplace_back(field.at(position).head<3>());
       volume.point_w.push_back(point_w);
-      volume.extrapolated.push_back(field.measured().is_beyond(position));
+      volume.extrapolated.push_back(field.is_beyond_readings(position));
       if (is_corner(result.machine, position)) volume.corner_w.push_back(point_w);
     }
     volume.error_w = without_rigid_motion(volume.point_w, errors);

@@ -19,8 +19,7 @@ namespace {
 constexpr double kDistinctShare = 1.0 / 200.0;  // of the stretch
 constexpr double kLeastMoved = 1e-3;            // of the travel: less is an axis that stands still
 constexpr double kLeastRange = 1e-12;           // m or rad: an axis that did not move
-constexpr int kMaxAutomaticHarmonic = 12;
-constexpr double kGrowth = 2.0;  // of a piece outside the measured part, to the next
+constexpr double kGrowth = 2.0;                 // of a piece outside the measured part, to the next
 
 /// Of readings that are not left out.
 template <class Visit>
@@ -55,10 +54,25 @@ int distinct_angles(const Campaign& campaign, AxisName axis) {
 
 /// As many harmonics as angles can tell apart.
 int automatic_harmonics(const Campaign& campaign, AxisName axis) {
-  return std::clamp((distinct_angles(campaign, axis) - 1) / 2, 1, kMaxAutomaticHarmonic);
+  return std::clamp((distinct_angles(campaign, axis) - 1) / 2, 1, kMostAutomaticHarmonics);
+}
+
+/// Of a function that was smoothed when its values were identified, the choice that led to them.
+FunctionSpec as_chosen(FunctionSpec function) {
+  if (!function.smoothed) return function;
+  function.smoothed = false;
+  function.coefficients.clear();
+  if (find_basis(function.basis)->has_automatic_degree) {
+    function.automatic_degree = true;
+  } else {
+    function.knots = KnotChoice::Automatic;
+    function.breakpoints.clear();
+  }
+  return function;
 }
 
 FunctionSpec resolved(FunctionSpec function, ErrorSymbol symbol, const Campaign& campaign) {
+  function = as_chosen(std::move(function));
   if (function.automatic_degree) function.degree = automatic_harmonics(campaign, symbol.axis);
   const BasisKind* kind = find_basis(function.basis);
   if (kind == nullptr || !kind->uses_knots || function.knots == KnotChoice::Explicit) return function;

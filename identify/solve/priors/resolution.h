@@ -11,6 +11,7 @@
 namespace volcal {
 
 inline constexpr int kMaxAutomaticIntervals = 24;
+inline constexpr int kMostAutomaticHarmonics = 12;  ///< of a Fourier series
 
 /// The stretch of an axis that is resolved: the travel, or the measured part where this ends more than one
 /// interval before the travel does; m or rad. Outside, pieces double in length.

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kStartAmplitude = 5e-6;    // m or rad
 constexpr double kSpreadOfLogLambda = 3.0;  // before any reading
+constexpr double kHardlySmoothed = 1e-3;    // of lambda: thirty times the amplitude
 constexpr int kStartPlace = 6;
 constexpr double kSameLogLambda = 0.5;
 constexpr double kSameLogLength = 0.2;
@@ -57,24 +58,50 @@ SmoothingTerm surface_term(const TensorBasis& basis, int offset) {
   return term;
 }
 
+namespace {
+
+/// What readings say of a surface and of everything else, which has this precision beside them.
+struct SurfaceAndRest {
+  Eigen::MatrixXd own, coupling, rest;
+};
+
+SurfaceAndRest apart(const Eigen::MatrixXd& data, const Eigen::MatrixXd& precision,
+                     const SmoothingTerm& term) {
+  const int count = static_cast<int>(term.precision().rows());
+  std::vector<int> own(static_cast<std::size_t>(count)), rest;
+  std::iota(own.begin(), own.end(), term.offset);
+  for (int i = 0; i < data.rows(); ++i) {
+    if (i < term.offset || i >= term.offset + count) rest.push_back(i);
+  }
+  return {data(own, own), data(rest, own), data(rest, rest) + precision(rest, rest)};
+}
+
+}  // namespace
+
 void leave_imitated_to_the_rest(const Eigen::MatrixXd& data, const GaussianPrior& prior,
                                 std::vector<SmoothingTerm>& terms) {
   for (SmoothingTerm& term : terms) {
     if (term.is_function()) continue;
     GaussianPrior total = prior;
     add_smoothing(terms, total);
-    const int count = static_cast<int>(term.precision().rows());
-    std::vector<int> own(static_cast<std::size_t>(count)), rest;
-    std::iota(own.begin(), own.end(), term.offset);
-    for (int i = 0; i < data.rows(); ++i) {
-      if (i < term.offset || i >= term.offset + count) rest.push_back(i);
-    }
-    const Eigen::MatrixXd imitated =
-        imitated_coefficients(data(own, own), data(rest, own), data(rest, rest) + total.precision(rest, rest),
-                              invert_precision(term.precision()).covariance / term.lambda);
+    const SurfaceAndRest parts = apart(data, total.precision, term);
+    const Eigen::MatrixXd imitated = imitated_coefficients(
+        parts.own, parts.coupling, parts.rest, invert_precision(term.precision()).covariance / term.lambda);
     term.surface = std::make_shared<const SurfacePriors>(term.surface->without(imitated));
     term.prior = term.shapes()[term.shape];
   }
+}
+
+Eigen::VectorXd imitated_unless_smoothed(const Eigen::MatrixXd& data, const GaussianPrior& prior,
+                                         std::vector<SmoothingTerm> terms, std::size_t surface,
+                                         const Eigen::MatrixXd& functions) {
+  for (SmoothingTerm& term : terms) {
+    if (term.is_function()) term.lambda *= kHardlySmoothed;
+  }
+  GaussianPrior total = prior;
+  add_smoothing(terms, total);
+  const SurfaceAndRest parts = apart(data, total.precision, terms[surface]);
+  return imitated_shares(parts.own, parts.coupling, parts.rest, functions);
 }
 
 bool alike(const std::vector<SmoothingTerm>& terms, const std::vector<SmoothingTerm>& others) {

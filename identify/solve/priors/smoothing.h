@@ -37,6 +37,12 @@ SmoothingTerm surface_term(const TensorBasis& basis, int offset);
 /// `prior`: of everything but smoothing; reduced coordinates.
 void leave_imitated_to_the_rest(const Eigen::MatrixXd& data, const GaussianPrior& prior,
                                 std::vector<SmoothingTerm>& terms);
+/// Shares of functions of the surface terms[surface] (coefficients, one column each) that the rest of the
+/// model would imitate if error functions were hardly smoothed: readings do not tell them from error
+/// functions that happen to be rougher than others.
+Eigen::VectorXd imitated_unless_smoothed(const Eigen::MatrixXd& data, const GaussianPrior& prior,
+                                         std::vector<SmoothingTerm> terms, std::size_t surface,
+                                         const Eigen::MatrixXd& functions);
 /// Same shapes, amplitudes within 28 %, correlation lengths within 22 %: less than evidence knows of one, and
 /// nothing that the noise beside them would notice.
 bool alike(const std::vector<SmoothingTerm>& terms, const std::vector<SmoothingTerm>& others);

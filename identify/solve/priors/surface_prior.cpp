@@ -186,4 +186,12 @@ Eigen::MatrixXd imitated_coefficients(const Eigen::MatrixXd& own, const Eigen::M
   return unit * share.vectors.rightCols(imitated);
 }
 
+Eigen::VectorXd imitated_shares(const Eigen::MatrixXd& own, const Eigen::MatrixXd& coupling,
+                                const Eigen::MatrixXd& rest, const Eigen::MatrixXd& functions) {
+  const Eigen::MatrixXd across = coupling * functions;
+  const Eigen::ArrayXd imitated = across.cwiseProduct(explained_by(rest, across)).colwise().sum();
+  const Eigen::ArrayXd seen = functions.cwiseProduct(own * functions).colwise().sum();
+  return (seen > 0.0).select(imitated / seen, 1.0);
+}
+
 }  // namespace volcal

@@ -48,4 +48,9 @@ class SurfacePriors {
 Eigen::MatrixXd imitated_coefficients(const Eigen::MatrixXd& own, const Eigen::MatrixXd& coupling,
                                       const Eigen::MatrixXd& rest, const Eigen::MatrixXd& prior);
 
+/// Share of what the readings see of each function (coefficients, one column each) that the rest imitates,
+/// 0..1; 1 of what they do not see.
+Eigen::VectorXd imitated_shares(const Eigen::MatrixXd& own, const Eigen::MatrixXd& coupling,
+                                const Eigen::MatrixXd& rest, const Eigen::MatrixXd& functions);
+
 }  // namespace volcal

@@ -11,8 +11,12 @@
 #include "tests/support/five_axis.h"
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
+#include "tests/support/straight_surface.h"
+#include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/effects/registry.h"
 #include "volcal/model/kinematics/rotary_datum.h"
 #include "volcal/model/observation/campaign_binding.h"
 #include "volcal/sim/machine/transforms.h"
@@ -141,6 +145,27 @@ Eigen::MatrixXd error_rows(const FitResult& result, const PointSet& set, const T
   return rows;
 }
 
+/// EXX += amplitude * expression, its amplitude uncertain.
+void add_expression(FitResult& result, const std::string& target, const std::string& expression,
+                    double amplitude) {
+  const EffectSpec spec =
+      effect_spec("custom", {{"target", target}, {"expression", expression}, {"amplitude", amplitude}});
+  ParameterBlock block;
+  block.kind = ParameterKind::Effect;
+  block.name = find_effect("custom")->make(spec, "model.toml")->amplitudes().front().label;
+  block.offset = result.layout.size++;
+  block.labels = {""};
+  block.units = {"um"};
+  block.si_per_unit = {1e-6};
+  block.guess = Eigen::VectorXd::Zero(1);
+  result.layout.blocks.push_back(block);
+  result.identified.effects.push_back(spec);
+  result.parameters.conservativeResize(result.layout.size);
+  result.parameters[block.offset] = amplitude;
+  result.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(result.layout.size, result.layout.size));
+  result.covariance(block.offset, block.offset) = 1e-26;
+}
+
 TEST(Alignment, ErrorsAndTheirCovarianceAreTheSameUpToARigidMotion) {
   std::mt19937_64 random(17);
   for (const char* code : {"w X b Y Z t", "w X' Y' b Z t", "w b X Y Z t", "w Y' b Z X t"}) {
@@ -162,6 +187,39 @@ TEST(Alignment, ErrorsAndTheirCovarianceAreTheSameUpToARigidMotion) {
           EXPECT_LT((u2 - u2_after).norm(), 1e-12 * u2.norm()) << code;
         }
       }
+    }
+  }
+}
+
+/// What a surface adds is a function of the commanded positions, which an origin does not move: with a
+/// surface and an expression errors and their covariance are the same up to a rigid motion, too.
+TEST(Alignment, CarriesSurfacesAndExpressions) {
+  std::mt19937_64 random(18);
+  for (const char* code : {"w X' Y' b Z t", "w Y' b Z X t"}) {
+    FitResult result = result_with_tools(random, code);
+    testing_support::add_straight_surface(
+        result, testing_support::stated_surface("EAY", "y z", {0.0, 0.0}, {1000.0, 1000.0}, {3, 2}), 1);
+    add_expression(result, "EXX", "z * z", 4e-12);
+    Alignment alignment = to_datum(AxisName::Y, AxisName::Z);
+    alignment.origin = AxisPosition{0.3, 0.8, 0.6};
+    const FitResult aligned = align_result(result, alignment).result;
+    const PointSet set = random_points(random, 12);
+    for (const Tool& tool : result.machine.tools) {
+      const auto errors = [&](const FitResult& of, const Tool& with) {
+        const ErrorField field(of, with);
+        Eigen::VectorXd all(3 * static_cast<Eigen::Index>(set.positions.size()));
+        for (std::size_t i = 0; i < set.positions.size(); ++i)
+          all.segment<3>(3 * static_cast<Eigen::Index>(i)) = field.at(set.positions[i]).head<3>();
+        return all;
+      };
+      const Eigen::VectorXd before = set.rest * errors(result, tool);
+      EXPECT_LT((before - set.rest * errors(aligned, tool)).norm(), 1e-15) << code;
+      EXPECT_GT(before.norm(), 10e-6);
+      const Eigen::MatrixXd rows = set.rest * error_rows(result, set, tool);
+      const Eigen::MatrixXd rows_after = set.rest * error_rows(aligned, set, tool);
+      const Eigen::MatrixXd u2 = rows * result.covariance * rows.transpose();
+      EXPECT_LT((u2 - rows_after * aligned.covariance * rows_after.transpose()).norm(), 1e-12 * u2.norm())
+          << code;
     }
   }
 }
@@ -372,7 +430,7 @@ TEST(Alignment, SaysWhatCannotBeDone) {
   alignment.spindle_tilt = Eigen::Vector2d(0.5, 0.0);
   EXPECT_THAT(refused_alignment(result, alignment), HasSubstr("10 mrad"));
   EXPECT_THAT(
-      refused_alignment(result_with(machine_of("w X' b Y t"), {}, 4), to_datum(AxisName::X, AxisName::Y)),
+      refused_alignment(result_with(machine_of("w X' b Y t"), {}, 4), to_datum(AxisName::X, AxisName::Z)),
       HasSubstr("no axis Z"));
   FitResult thermal = result;
   thermal.layout.blocks[0].kind = ParameterKind::Effect;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <string>
 
@@ -72,6 +73,45 @@ TEST(ErrorBudget, SharesAddUpToTheWholeWhateverCancels) {
   };
   EXPECT_NEAR(total(budget.contributions), 1.0, 1e-9);
   EXPECT_NEAR(total(budget.causes), 1.0, 1e-9);
+}
+
+/// A table whose angle is wrong by a sin q moves a point at the distance r of its axis by r a sin q: the mean
+/// square is a^2 / 2 times that of r, which is L^2 over five positions of X and of Y from -L to L, their mean
+/// squares L^2 / 2 each. Nothing of it is left with the table at 0, and no rigid motion takes any of it.
+TEST(ErrorBudget, IsOverTheTravelOfRotaryAxesWithErrors) {
+  constexpr double kHalfTravel = 0.3, kAngle = 20e-6;
+  Machine machine = machine_of("w C' b X Y Z t");
+  machine.tools = {{"short", {0.0, 0.0, -0.1}, 0.0}};
+  for (Axis& axis : machine.axes) {
+    axis.travel_max = is_rotary(axis.name) ? std::numbers::pi : kHalfTravel;
+    axis.travel_min = -axis.travel_max;
+  }
+  const FitResult result = testing::result_with(
+      machine, {.functions = {{"ECC", [](double q) { return kAngle * std::sin(q); }}}}, 72);
+  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
+  EXPECT_EQ(budget.turned, std::vector{AxisName::C});
+  EXPECT_TRUE(budget.at_rest.empty());
+  const double expected = kAngle * kHalfTravel / std::sqrt(2.0);
+  EXPECT_NEAR(line_named(budget.causes, "rotary axes").rms, expected, 0.02 * expected);
+  EXPECT_NEAR(line_named(budget.causes, "rotary axes").share, 1.0, 1e-9);
+  const ErrorBudget at_rest = error_budget(result, result.machine.tools[0], {}, 5, RotaryPoses::AtRest);
+  EXPECT_EQ(at_rest.at_rest, std::vector{AxisName::C});
+  EXPECT_LT(at_rest.total.rms, 1e-12);
+}
+
+/// A reversal of the table's angle is +-b/2, as often either way.
+TEST(ErrorBudget, ApproachesRotaryAxesFromBothSides) {
+  constexpr double kHalfTravel = 0.3, kJump = 10e-6;
+  Machine machine = machine_of("w C' b X Y Z t");
+  machine.tools = {{"short", {0.0, 0.0, -0.1}, 0.0}};
+  for (Axis& axis : machine.axes) {
+    axis.travel_max = is_rotary(axis.name) ? std::numbers::pi : kHalfTravel;
+    axis.travel_min = -axis.travel_max;
+  }
+  const FitResult result = testing::result_with(
+      machine, {.functions = {{"ECC", [](double) { return 0.0; }}}, .reversals = {{"ECC", kJump}}}, 72);
+  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
+  EXPECT_NEAR(budget.total.rms, 0.5 * kJump * kHalfTravel, 0.02 * 0.5 * kJump * kHalfTravel);
 }
 
 // A model with values is a machine whose errors are known: EXX of 10 um/m and an expansion of 11 um/m/K.

@@ -12,6 +12,8 @@
 #include "volcal/identify/report/text/plan_text.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/finding_codes.h"
+#include "volcal/model/effects/effect_keys.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
@@ -19,6 +21,7 @@ namespace volcal {
 namespace {
 
 using ::testing::Contains;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
@@ -91,6 +94,57 @@ TEST(CampaignPlan, PredictsTheUncertaintyThatTheFitStates) {
 const CampaignPlan& volumetric_plan() {
   static const CampaignPlan plan = plan_campaign(small_plan(), nullptr);
   return plan;
+}
+
+/// What a diagnosis of another campaign has left in a model: laws and surfaces of temperatures and a feed,
+/// what moved its stations.
+std::vector<EffectSpec> effects_of_another_campaign() {
+  return {
+      effect_spec("custom", {{"target", std::string("EXX")},
+                             {"expression", std::string("x * (T_air - 20)")},
+                             {"amplitude", 1e-9}}),
+      effect_spec("empirical", {{"target", std::string("EAY")},
+                                {"drivers", std::string("y T_column")},
+                                {"from", std::vector<double>{0.0, 18.0}},
+                                {"to", std::vector<double>{400.0, 24.0}},
+                                {"pieces", std::vector<double>{1.0, 1.0}}}),
+      effect_spec("scale-expansion", {{"axis", std::string("Z")}, {"temperature", std::string("column")}}),
+      effect_spec("custom", {{"target", std::string("EYY")}, {"expression", std::string("y * feed")}}),
+      effect_spec("station-drift", {{"station", std::string("P9")}})};
+}
+
+TEST(CampaignPlan, TakesAsKnownWhatItsReadingsCannotShow) {
+  PlanSettings settings = small_plan();
+  settings.model.effects = effects_of_another_campaign();
+  const CampaignPlan plan = plan_campaign(settings, nullptr);
+  ASSERT_EQ(plan.findings.size(), 1u);
+  const Finding& known = plan.findings.front();
+  EXPECT_EQ(known.code, FindingCode::PlanEffectsKnown);
+  EXPECT_EQ(known.texts("effects").size(), 5u);
+  EXPECT_EQ(known.texts("columns"), (std::vector<std::string>{"T_air_degC", "T_column_degC", "feed_mm_min"}));
+  EXPECT_THAT(plan_text(plan), HasSubstr("The plan takes as known, as the model states it: EXX by x * "));
+  // With these known the others are as certain as in a model without.
+  EXPECT_EQ(plan.plan.volumetric.rms, volumetric_plan().plan.volumetric.rms);
+  EXPECT_THAT(volumetric_plan().findings, IsEmpty());
+}
+
+TEST(CampaignPlan, PlansForWhatItsReadingsShow) {
+  const PlanSettings settings = small_plan();
+  const Campaign planned = campaign_of(textbook_layout(settings, LineOfSight(settings)), settings);
+  ModelSpec model;
+  model.effects = {
+      effect_spec("reversal", {{"symbol", std::string("EXX")}}),
+      effect_spec("custom", {{"target", std::string("EXX")}, {"expression", std::string("z * z")}})};
+  EXPECT_FALSE(hold_effects_unseen(planned, model));
+  EXPECT_EQ(model.effects.size(), 2u);
+}
+
+/// A mistake is none of these.
+TEST(CampaignPlan, RefusesAnEffectOfAToolThatTheMachineLacks) {
+  PlanSettings settings = small_plan();
+  settings.model.effects = {
+      effect_spec("custom", {{"target", std::string("tool lang z")}, {"expression", std::string("x")}})};
+  EXPECT_THROW(plan_campaign(settings, nullptr), InputError);
 }
 
 TEST(CampaignPlan, BeatsTheTextbookWithinItsLimits) {

@@ -324,6 +324,18 @@ TEST(FitWithCorrelatedNoise, IntervalsHoldWhereThoseOfWhiteNoiseAreTooNarrow) {
   EXPECT_GT(automatic, 0.85);
 }
 
+/// With one tool and no angles some rotations have no lever.
+TEST(FitWithCorrelatedNoise, IsFoundBesideErrorsThatAreNotVisible) {
+  auto campaign = simulated(23, {6, 5, 4}, {0.8e-6, 0.6e-6});
+  std::erase_if(campaign.campaign.setups, [](const volcal::Setup& setup) { return setup.tool != 0; });
+  const FitResult found = fit(campaign.campaign, spline_model(5), options_with(NoisePolicy::Automatic));
+  EXPECT_EQ(found.status, FitStatus::RankDeficient);
+  ASSERT_TRUE(found.noise.more_than_white);
+  EXPECT_NEAR(row_of(found, "wander").value, 0.8e-6, 0.3e-6);
+  EXPECT_NEAR(row_of(found, "line").value, 0.6e-6, 0.2e-6);
+  EXPECT_NEAR(found.noise.chi2 / found.noise.dof, 1.0, 0.1);
+}
+
 TEST(FitWithCorrelatedNoise, ResidualsAreJudgedByTheirTotalDeviation) {
   auto campaign = simulated(24, {6, 5, 4}, {0.8e-6, 0.6e-6});
   campaign.campaign.setups[1].readings.value[0][40] += 20e-6;

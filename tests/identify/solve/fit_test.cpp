@@ -89,6 +89,21 @@ TEST(Fit, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_TRUE(one.covariance == three.covariance);
 }
 
+/// Its functions state breakpoints and values; what they were chosen and smoothed by is chosen anew.
+TEST(Fit, OfAnIdentifiedModelIsTheFitThatItCameFrom) {
+  const auto simulated = sim::simulate(small_study(0, small_tracking()));
+  const FitResult first = fit(simulated.campaign, ModelSpec{}),
+                  again = fit(simulated.campaign, first.identified);
+  ASSERT_EQ(again.functions.size(), first.functions.size());
+  for (std::size_t i = 0; i < first.functions.size(); ++i) {
+    EXPECT_EQ(again.functions[i].intervals, first.functions[i].intervals) << first.functions[i].symbol.name();
+    EXPECT_TRUE(again.functions[i].smoothed);
+    EXPECT_NEAR(again.functions[i].effective_parameters, first.functions[i].effective_parameters, 1e-6);
+  }
+  EXPECT_NEAR(again.chi2, first.chi2, 1e-6 * first.chi2);
+  EXPECT_TRUE(again.parameters.isApprox(first.parameters, 1e-6));
+}
+
 class FitOfTracking : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(FitOfTracking, ConvergesFromStationsGuessedFiveCentimetresOff) {

@@ -89,6 +89,45 @@ TEST(RotaryErrors, OfAModelThatHasNoneAreMissedAloud) {
   EXPECT_EQ(missing_rotary_errors(campaign, located).size(), 1U);
 }
 
+/// Tens of micrometres of errors that the model does not have, readings of 1.5 um: what they may be, a
+/// millimetre and a milliradian, is in the uncertainty of what is predicted.
+TEST(RotaryErrors, OfAModelThatHasNoneAreInTheUncertaintyOfAValidation) {
+  const sim::TruthMachine truth = five_axis_truth(five_axis_machine("w C' A' b X Y Z t"), {}, 5);
+  GridPlan plan;
+  plan.turns = 6;
+  plan.tilts = 5;
+  const Campaign campaign = r_test_campaign(truth, plan, 17);
+  ModelSpec none;
+  none.default_function.basis = "zero";
+  const FitResult result = fit(campaign, none, {});
+  const Validation validation = validate(campaign, result);
+  EXPECT_LT(validation.figures.reduced_chi2, 1.0);
+  EXPECT_EQ(validation.figures.coverage95, 1.0);
+  for (const double u : validation.after.model_u) {
+    EXPECT_GT(u, 0.1e-3);
+    EXPECT_LT(u, 5e-3);
+  }
+}
+
+/// A tilt that is stated for one of two axes leaves the other's errors open.
+TEST(RotaryErrors, OfOneAxisLeaveThoseOfTheOtherOpen) {
+  const sim::TruthMachine truth = five_axis_truth(five_axis_machine("w C' A' b X Y Z t"), {}, 5);
+  GridPlan plan;
+  plan.turns = 6;
+  plan.tilts = 5;
+  const Campaign campaign = r_test_campaign(truth, plan, 17);
+  const FitResult all = fit(campaign, rotary_model(), {});
+  const Validation known = validate(campaign, all);
+  EXPECT_LT(*std::ranges::max_element(known.after.model_u), 50e-6);
+  ModelSpec of_c;
+  of_c.default_function.basis = "zero";
+  of_c.locations[{Component::A, AxisName::C}] = 0.0;
+  const Validation open = validate(campaign, fit(campaign, of_c, {}));
+  std::vector<double> u = open.after.model_u;
+  std::ranges::nth_element(u, u.begin() + static_cast<std::ptrdiff_t>(u.size() / 2));
+  EXPECT_GT(u[u.size() / 2], 0.1e-3);  // where the other axis stands at home its errors are small
+}
+
 /// What turns with the table, Rot(-q) eta of EXC and EYC, is a shift of the workpiece and stays in no error
 /// motion; what turns the other way is an error motion.
 TEST(RotaryGauge, LeavesWhatTurnsWithTheTableToTheWorkpiece) {

@@ -16,6 +16,7 @@
 
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -82,6 +83,20 @@ const std::vector<WordedFinding>& examples() {
        "setup \"X\" (line.csv): by its times the machine moved at 12 m/s between readings: are they in "
        "minutes, hours "
        "or days? add scale = { time_s = 60.0 }, 3600.0 or 86400.0"},
+      {{FindingCode::ReadingsAnglesMisread,
+        {{"setup", "S1"},
+         {"file", "s1.csv"},
+         {"columns", Texts{"b_deg", "c_deg"}},
+         {"factors", std::vector<FindingNumber>{{-1.0}, {57.29577951308232}}},
+         {"miss", FindingNumber{0.3104, "mm", 1e-3}},
+         {"better", FindingNumber{0.00021, "mm", 1e-3}}}},
+       "setup \"S1\" (s1.csv): its positions miss what the instrument allows by 310.4 mm, with b_deg "
+       "reversed, "
+       "c_deg in radians by 0.2 mm: if so add scale = { b_deg = -1, c_deg = 57.2957795131 }"},
+      {{FindingCode::ReadingsAnglesInRadians,
+        {{"setup", "C"}, {"file", "c.csv"}, {"columns", Texts{"c_deg"}}}},
+       "setup \"C\" (c.csv): c_deg holds whole degrees if it is in radians, and no round numbers of degrees: "
+       "if so add scale = { c_deg = 57.2957795131 }"},
       {{FindingCode::ReadingsDuplicated, {{"setup", "X2"}, {"first_setup", "X"}}},
        "setups \"X\" and \"X2\" hold the same readings: they count twice; remove one of them"},
       {{FindingCode::ReadingsDirectionsDerived,
@@ -153,6 +168,9 @@ const std::vector<WordedFinding>& examples() {
        "ECZ: not visible, no reading has a lever arm about Z; add setups with another tool offset, or an "
        "angle "
        "instrument about Z"},
+      {{FindingCode::NotVisibleNoLeverArm, {{"error", "ECC"}, {"about", "Z"}, {"table", "C"}}},
+       "ECC: not visible, no reading stands to the side of the axis of C, across Z; measure at places on the "
+       "table 100 mm or more from that axis, or with an angle instrument about Z"},
       {{FindingCode::NotVisibleNoReadingChanges, {{"error", "EXX"}, {"switch", "functions"}}},
        "EXX: not visible, no reading changes when it changes; add readings that are sensitive to it, or "
        "switch it off "
@@ -169,6 +187,18 @@ const std::vector<WordedFinding>& examples() {
        "EXY: not visible, the readings stand at too few positions of axis Y to tell its course between them; "
        "add "
        "positions along axis Y"},
+      {{FindingCode::NotVisibleFewPositions,
+        {{"error", "EXC"},
+         {"axis", "C"},
+         {"positions", std::int64_t{12}},
+         {"told", std::int64_t{5}},
+         {"harmonics", std::int64_t{8}},
+         {"spacing", FindingNumber{kRadianPerDegree * 30.0, "deg", kRadianPerDegree}}}},
+       "EXC: not visible, the readings stand at 12 different positions of axis C, on a grid of 30 deg; "
+       "nothing "
+       "there tells waves of more than 5 a turn from longer ones, and its function has up to 8; add "
+       "positions "
+       "of axis C off that grid, 17 or more in all, or give its function degree = 5"},
       {{FindingCode::NotVisibleLikeStraightness, {{"error", "EC0Y"}, {"axis", "Y"}, {"straightness", "EXY"}}},
        "EC0Y: not visible, the readings stand at too few positions of axis Y, or on too little of its "
        "travel, to tell "
@@ -184,6 +214,15 @@ const std::vector<WordedFinding>& examples() {
        "reading; measure "
        "from more stations (four, well apart) and repeat with a second tool offset, sideways and of another "
        "length"},
+      {{FindingCode::NotVisibleExchangeable,
+        {{"error", "ECB"},
+         {"partners", Texts{"EYB"}},
+         {"remedies", Texts{"second-tool", "mandrel"}},
+         {"turning", "B"}}},
+       "ECB: not visible, a change of it can be exchanged with EYB without changing any reading; turn B with "
+       "a "
+       "second tool offset, sideways and of another length: other tools are in use where it stands still and "
+       "turn B with a mandrel whose tip lies 60 mm or more to the side of the spindle's axis"},
       {{FindingCode::NotVisibleExchangeable,
         {{"error", "EAZ"},
          {"partners", Texts{"EYZ"}},
@@ -202,6 +241,14 @@ const std::vector<WordedFinding>& examples() {
        "EAZ: not visible, a change of it can be exchanged with EYZ without changing any reading; add lines "
        "at other "
        "offsets, straightness or angle readings that tell them apart"},
+      {{FindingCode::RotaryHarmonicsHidden,
+        {{"axis", "C"},
+         {"positions", std::int64_t{12}},
+         {"told", std::int64_t{5}},
+         {"spacing", FindingNumber{kRadianPerDegree * 30.0, "deg", kRadianPerDegree}}}},
+       "axis C stood at 12 positions, on a grid of 30 deg: waves of more than 5 a turn look there like "
+       "longer "
+       "ones and are in no error motion; add positions of C off that grid"},
       {{FindingCode::RankHeldByPrior,
         {{"block", "bb1: centre"}, {"parameter", "z"}, {"sigma", FindingNumber{1e-4, "mm", 1e-3}}}},
        "bb1: centre z: held at its guess +- 0.1 mm"},
@@ -319,17 +366,16 @@ const std::vector<WordedFinding>& examples() {
          {"U", FindingNumber{0.82e-6, "urad", 1e-6}},
          {"drivers", Texts{"y", "z"}},
          {"at", std::vector<FindingNumber>{{310.0}, {-120.0}}},
-         {"laws", Texts{"EAY by y * z^2", "EAY by y * z"}},
-         {"law_shapes", Texts{"p = 120", ""}},
-         {"law_amplitudes", std::vector<FindingNumber>{{1.234e-6, "urad", 1e-6}, {2e-6, "urad", 1e-6}}},
-         {"law_U", std::vector<FindingNumber>{{0.12e-6, "urad", 1e-6}, {0.3e-6, "urad", 1e-6}}},
+         {"laws", Texts{"EAY by y * (z - p)^2", "EAY by y * z"}},
+         {"law_shapes", Texts{"p = 120 mm", ""}},
+         {"law_amplitudes",
+          std::vector<FindingNumber>{{1.234e-6, "urad/mm3", 1e-6}, {2e-6, "urad/mm2", 1e-6}}},
+         {"law_U", std::vector<FindingNumber>{{0.12e-6, "urad/mm3", 1e-6}, {0.3e-6, "urad/mm2", 1e-6}}},
          {"left_open", Texts{"what is straight in y: the rest of the model holds it"}}}},
        "Drawn for it: EAY by y z, up to 12.3 +- 0.82 urad at y = 310 mm, z = -120 mm; extend the model with "
-       "it and the error falls. A law that explains as much: EAY by y * z^2 with p = 120, 1.23 +- 0.12 urad. "
-       "Or: "
-       "EAY by "
-       "y * z, 2 +- 0.3 urad. These readings leave open what is straight in y: the rest of the model holds "
-       "it."},
+       "it and the error falls. A law that explains as much: EAY by y * (z - p)^2 with p = 120 mm, 1.23 +- "
+       "0.12 urad/mm3. Or: EAY by y * z, 2 +- 0.3 urad/mm2. These readings leave open what is straight in y: "
+       "the rest of the model holds it."},
       {{FindingCode::DiagnosisDrawn,
         {{"effect", "EXX by t since_c"},
          {"largest", FindingNumber{1e-6, "um", 1e-6}},
@@ -421,6 +467,13 @@ const std::vector<WordedFinding>& examples() {
        "Not looked for, as no reading records its time (time_s): station-drift, thermal-drift."},
       {{FindingCode::MeasurementNoneSeparates, {{"effects", Texts{"EXX reversal", "P1 drift"}}}},
        "Nothing on the menu tells EXX reversal from P1 drift: they predict nearly the same readings."},
+      {{FindingCode::MeasurementNoneSeparates,
+        {{"effects", Texts{"EXX reversal", "P1 drift"}},
+         {"difference", FindingNumber{0.31e-6, "um", 1e-6}},
+         {"U", FindingNumber{0.5e-6, "um", 1e-6}}}},
+       "Nothing on the menu tells EXX reversal from P1 drift in a way that is worth it, and it does not "
+       "matter: "
+       "in the measured volume predictions differ by at most 0.31 um (U 0.5 um)."},
       {{FindingCode::MeasurementSeparates,
         {{"action", "revisit"},
          {"measurement", "measure P1 with tool short again after 3 h"},
@@ -463,6 +516,17 @@ const std::vector<WordedFinding>& examples() {
          {"offset_of_new_tool", Numbers{{0.1, "mm", 1e-3}, {0.0, "mm", 1e-3}, {-0.2, "mm", 1e-3}}},
          {"new_place", Numbers{{0.5, "mm", 1e-3}, {-0.2, "mm", 1e-3}, {0.35, "mm", 1e-3}}}}},
        "a further station at [500, -200, 350] mm with a tool of offset [100, 0, -200] mm"},
+      {{FindingCode::PlanEffectsKnown,
+        {{"effects", Texts{"surface EAY by y T_column", "EXX by x * (T_air - 20)"}},
+         {"columns", Texts{"T_air_degC", "T_column_degC"}}}},
+       "The plan takes as known, as the model states it: surface EAY by y T_column; EXX by x * (T_air - 20). "
+       "Positions are planned, not conditions; where readings record T_air_degC, T_column_degC and that "
+       "changes, "
+       "a fit identifies it anew."},
+      {{FindingCode::PlanEffectsKnown, {{"effects", Texts{"station drift P9 x"}}}},
+       "The plan takes as known, as the model states it: station drift P9 x. It belongs to setups of the "
+       "campaign "
+       "in which it was found."},
       {{FindingCode::StandardsRemovedReadingsUsed, {{"readings", std::int64_t{3}}}},
        "3 readings that the adjustment left out are in these figures"},
       {{FindingCode::StandardsLinesOwnZero},
@@ -504,12 +568,27 @@ const std::vector<WordedFinding>& examples() {
          {"travel_from", FindingNumber{0.0, "mm", 1e-3}},
          {"travel_to", FindingNumber{1.0, "mm", 1e-3}}}},
        "X was measured from 50 to 900 of 0 to 1000 mm: beyond it the last measured error is held"},
+      {{FindingCode::ErrorsFadedBeyondReadings,
+        {{"effect", "surface EAY by y T_column"}, {"readings", std::int64_t{12}}}},
+       "surface EAY by y T_column fades out at 12 of these readings: they lie beyond those that it was drawn "
+       "from"},
+      {{FindingCode::ConditionBeyondReadings,
+        {{"condition", "T_column"},
+         {"value", FindingNumber{30.0, "degC", 1.0}},
+         {"measured_from", FindingNumber{18.9, "degC", 1.0}},
+         {"measured_to", FindingNumber{24.1, "degC", 1.0}}}},
+       "T_column = 30 degC is beyond the readings, 18.9 to 24.1 degC: laws are continued to it, curves and "
+       "surfaces fade out"},
       {{FindingCode::EffectInNoTable, {{"effect", "following error X"}}},
        "following error X was identified and is in no table: it acts along a path or in one setup"},
       {{FindingCode::RotaryErrorsInNoTable, {{"axis", "C"}}},
        "errors of axis C were identified and are in no table: tables are for linear axes with C at 0"},
       {{FindingCode::RotaryErrorsPartlyInTables, {{"axis", "C"}, {"type", "R-POS"}}},
        "of the errors of axis C the tables hold R-POS alone"},
+      {{FindingCode::RotaryErrorsNotInModel, {{"axis", "C"}, {"in_uncertainty", true}}},
+       "axis C moves in these readings, and the model has no errors of it: what they do is in the residuals, "
+       "what they may be (1 mm, 1 mrad) in the uncertainty of the model; identify them by volcal fit from "
+       "readings that move C"},
       {{FindingCode::RotaryErrorsNotInModel, {{"axis", "C"}}},
        "axis C moves in these readings, and the model has no errors of it: what they do is in the residuals; "
        "identify them by volcal fit from readings that move C"},

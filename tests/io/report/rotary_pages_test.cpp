@@ -96,6 +96,18 @@ TEST_F(RotaryPages, LinesPassWhereTheirErrorsSay) {
   EXPECT_NEAR(line.at("errors").at(0).at("U95").get<double>(), 1.96, 0.01);
 }
 
+/// Y0B of a head C B turns with C as EXC and EYC; on a trunnion the spheres' places take such a displacement.
+TEST_F(RotaryPages, OfAHeadSayWhatADisplacementAlongTheInnerAxisIs) {
+  EXPECT_TRUE(model().at("carried").empty());
+  const FitResult head = testing::rotary_result(testing::kHead);
+  const Json carried =
+      rotary_page(report_json(head, rotary_campaign(head.machine))).at("models").at(0).at("carried");
+  ASSERT_EQ(carried.size(), 1U);
+  EXPECT_EQ(carried.at(0).at("carrying"), "C");
+  EXPECT_EQ(carried.at(0).at("carried"), "B");
+  EXPECT_EQ(carried.at(0).at("motions"), Json({"EXC", "EYC"}));
+}
+
 TEST_F(RotaryPages, MapsHoldEveryToolAndMarkTheReadings) {
   const Json page = model();
   ASSERT_EQ(page.at("maps").size(), 2u);

@@ -45,7 +45,7 @@ Diagnosis with_a_drawn_surface() {
   law.spec.options.set("amplitude", 1e-12);
   law.amplitude = 1e-12;
   law.u = 1e-13;
-  law.unit = "urad";
+  law.unit = "urad/mm3";
   law.si_per_unit = 1e-6;
   law.log_evidence = 90.0;
   law.gain = 189.5;
@@ -108,6 +108,8 @@ TEST(SurfaceJson, ComesBack) {
   EXPECT_DOUBLE_EQ(after.effective_parameters, before.effective_parameters);
   ASSERT_EQ(after.formulas.size(), 1u);
   EXPECT_EQ(after.formulas.front().spec.options.all(), before.formulas.front().spec.options.all());
+  EXPECT_EQ(after.formulas.front().unit, "urad/mm3");
+  EXPECT_DOUBLE_EQ(after.formulas.front().amplitude, 1e-12);
   EXPECT_EQ(after.accepted_spec().kind, "custom");
   EXPECT_EQ(diagnosis_text(again), diagnosis_text(diagnosis));
 }

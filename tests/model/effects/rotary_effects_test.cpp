@@ -55,15 +55,38 @@ TEST(WormError, RepeatsWithItsPeriod) {
   EXPECT_LT((drivers - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-/// Forty places a turn tell whole periods a turn from 3 to 20.
+/// Forty places a turn tell whole periods a turn from 3 to 19: the sine of 20 vanishes at all of them.
 TEST(WormError, IsLookedForAtWholePeriodsThatThePlacesTell) {
   std::vector<double> degrees;
   for (int k = 0; k < 40; ++k) degrees.push_back(9.0 * k);
   const Campaign campaign = turned_table(degrees);
   const auto scanned = find_effect("worm-error")->make(worm(4.0), "model.toml")->scan(campaign);
-  ASSERT_EQ(scanned.size(), 18u);
+  ASSERT_EQ(scanned.size(), 17u);
   EXPECT_NEAR(scanned.front()[0], 120.0 * kDegree, 1e-12);
-  EXPECT_NEAR(scanned.back()[0], 18.0 * kDegree, 1e-12);
+  EXPECT_NEAR(scanned.back()[0], 360.0 / 19.0 * kDegree, 1e-12);
+}
+
+/// Both ends of a full turn are one place: 25 positions from -180 to 180 degrees are 24 places.
+TEST(WormError, CountsBothEndsOfATurnOnce) {
+  std::vector<double> degrees;
+  for (int k = -12; k <= 12; ++k) degrees.push_back(15.0 * k);
+  const auto scanned = find_effect("worm-error")->make(worm(4.0), "model.toml")->scan(turned_table(degrees));
+  ASSERT_EQ(scanned.size(), 9u);
+  EXPECT_NEAR(scanned.back()[0], 360.0 / 11.0 * kDegree, 1e-12);
+}
+
+/// Six places tell two periods a turn, seven three.
+TEST(WormError, IsNoCandidateWherePlacesTellNoTeeth) {
+  const EffectKind& kind = *find_effect("worm-error");
+  EXPECT_TRUE(kind.candidates(turned_table({0.0, 60.0, 120.0, 180.0, 240.0, 300.0, 360.0})).empty());
+  EXPECT_EQ(kind.candidates(turned_table({0.0, 50.0, 100.0, 150.0, 200.0, 250.0, 300.0})).size(), 1u);
+  EXPECT_TRUE(find_effect("ring-eccentricity")->candidates(turned_table({0.0, 180.0, 360.0})).empty());
+}
+
+/// The largest amplitude that a model file takes is that of the schema's key.
+TEST(LargestAmplitude, IsThatOfTheKey) {
+  const auto wave = find_effect("worm-error")->make(worm(4.0), "model.toml");
+  EXPECT_NEAR(largest_amplitude(*wave, wave->amplitudes()[1]), 1e4 * 1e-6, 1e-15);
 }
 
 TEST(WormError, IsOfRotaryAxesAlone) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -15,7 +16,7 @@
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/criticism/catalogue/named_effect.h"
 #include "volcal/identify/criticism/catalogue/written_effect.h"
-#include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/formulas/formula_search.h"
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
@@ -25,6 +26,7 @@
 #include "volcal/identify/report/text/criticism/diagnosis_text.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/session/diagnosed_campaign.h"
 #include "volcal/identify/text/atomic_folder.h"
 
 namespace volcal::cli {
@@ -91,16 +93,32 @@ void write_diagnosis(const DiagnoseArguments& arguments, const Campaign& campaig
 
 constexpr const char* kOfModel = "model";
 
-/// A target with its drivers; or all surfaces of the model, which is then criticised without them.
+bool is_surface(const EffectSpec& effect) { return effect.kind == "empirical"; }
+
+/// Takes surfaces out of the model: laws are looked for in their place, not beside them.
+std::vector<EffectSpec> taken_out(ModelSpec& model, const std::function<bool(const EffectSpec&)>& is_wanted) {
+  std::vector<EffectSpec> taken;
+  std::ranges::copy_if(model.effects, std::back_inserter(taken), is_wanted);
+  std::erase_if(model.effects, is_wanted);
+  return taken;
+}
+
+/// A target with its drivers, as the surface of the model where it has that; or all surfaces of the model.
 void add_asked_laws(const std::string& text, ModelSpec& model, DiagnoseOptions& options) {
-  if (text != kOfModel) return options.asked_laws.push_back(written_surface("--formula", text));
-  const auto is_surface = [](const EffectSpec& effect) { return effect.kind == "empirical"; };
-  const std::size_t before = options.asked_laws.size();
-  std::ranges::copy_if(model.effects, std::back_inserter(options.asked_laws), is_surface);
-  std::erase_if(model.effects, is_surface);
-  if (options.asked_laws.size() > before) return;
-  throw InputError({model.file, 0}, "--formula model: the model has no effect of kind \"empirical\"",
-                   "give a model that has one with --model, or write --formula \"TARGET: DRIVERS\"");
+  std::vector<EffectSpec> surfaces;
+  if (text == kOfModel) {
+    surfaces = taken_out(model, is_surface);
+    if (surfaces.empty())
+      throw InputError({model.file, 0}, "--formula model: the model has no effect of kind \"empirical\"",
+                       "give a model that has one with --model, or write --formula \"TARGET: DRIVERS\"");
+  } else {
+    const EffectSpec asked = written_surface("--formula", text);
+    surfaces = taken_out(model, [&asked](const EffectSpec& effect) {
+      return is_surface(effect) && is_same_function(effect, asked);
+    });
+    if (surfaces.empty()) surfaces = {asked};
+  }
+  options.asked_laws.insert(options.asked_laws.end(), surfaces.begin(), surfaces.end());
 }
 
 int run_diagnose(const DiagnoseArguments& arguments) {
@@ -129,7 +147,7 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   for (const std::string& text : arguments.laws) add_asked_laws(text, criticised, options);
   ProgressBar bar("diagnose");
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
-  const DiagnosedModel diagnosed = diagnose_model(campaign, criticised, options);
+  const DiagnosedModel diagnosed = diagnosed_campaign(campaign, criticised, options);
   const Diagnosis& diagnosis = diagnosed.diagnosis;
   bar.finish();
   if (!arguments.output.empty()) write_diagnosis(arguments, campaign, criticised, diagnosed);
@@ -166,8 +184,8 @@ std::function<int()> define_diagnose(CLI::App& app) {
   app.add_option(
       "--formula", arguments->laws,
       "\"TARGET: DRIVERS\": which law of one to three recorded variables the target follows, beside "
-      "what is found; \"model\": laws behind the surfaces of the model, which is criticised without "
-      "them; may be given several times");
+      "what is found or in the place of a surface of these variables; \"model\": laws behind the surfaces "
+      "of the model, which is criticised without them; may be given several times");
   app.add_option("--separate", arguments->separate,
                  "KIND:TARGET,KIND:TARGET: which measurement would separate these effects, or show them")
       ->delimiter(',');

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/unknowns.h"
+#include "volcal/model/kinematics/rotary_datum.h"
 
 namespace volcal::report {
 namespace {
@@ -53,6 +57,29 @@ Json identified(const FitResult& result, const ParameterBlock& block) {
   return row;
 }
 
+Json without_value(LocationSymbol symbol, const char* state, const std::string& reason = "") {
+  return {{"symbol", symbol.name()},
+          {"axis", axis_letter(symbol.axis)},
+          {"meaning", meaning_of_location(symbol)},
+          {"unit", is_rotation(symbol.component) ? "µrad" : "µm"},
+          {"state", state},
+          {"reason", reason}};
+}
+
+/// Of rotary axes with identified locations: what no reading can tell from other errors.
+std::vector<LocationSymbol> zero_by_convention(const FitResult& result) {
+  std::vector<LocationSymbol> symbols = possible_locations(result.machine);
+  const std::vector<LocationSymbol> independent = independent_locations(result.machine);
+  std::erase_if(symbols, [&](const LocationSymbol& symbol) {
+    const bool axis_is_located = std::ranges::any_of(result.layout.blocks, [&](const ParameterBlock& block) {
+      return block.location && block.location->axis == symbol.axis;
+    });
+    return !is_rotary(symbol.axis) || !axis_is_located || result.layout.find_location(symbol) ||
+           std::ranges::find(independent, symbol) != independent.end();
+  });
+  return symbols;
+}
+
 }  // namespace
 
 Json locations_page(const PageInput& input) {
@@ -62,12 +89,11 @@ Json locations_page(const PageInput& input) {
     if (block.location) rows.push_back(identified(result, block));
   }
   for (const LocationSymbol symbol : result.identified.locations_off) {
-    rows.push_back({{"symbol", symbol.name()},
-                    {"axis", axis_letter(symbol.axis)},
-                    {"meaning", meaning_of_location(symbol)},
-                    {"unit", is_rotation(symbol.component) ? "µrad" : "µm"},
-                    {"state", "off"}});
+    rows.push_back(without_value(symbol, "off"));
   }
+  for (const LocationSymbol symbol : zero_by_convention(result))
+    rows.push_back(without_value(symbol, "convention",
+                                 "no reading tells it from other locations and the place of the workpiece"));
   return {{"primary", axis_letter(result.machine.datum.primary)},
           {"secondary", axis_letter(result.machine.datum.secondary)},
           {"coverage", rounded(result.coverage_factor)},

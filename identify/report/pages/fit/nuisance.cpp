@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "volcal/identify/report/numbers.h"
-#include "volcal/identify/report/values/surface_values.h"
+#include "volcal/identify/result/surface_values.h"
 #include "volcal/identify/words/sentences.h"
 
 namespace volcal::report {

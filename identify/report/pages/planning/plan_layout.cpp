@@ -139,6 +139,7 @@ Json plan_layout_page(const PlanPageInput& input) {
           {"region_mm", corners_json(sight.stations_w())},
           {"campaigns", std::move(campaigns)},
           {"invisible", sentences(plan.plan.result.rank.invisible)},
+          {"messages", sentences(plan.findings)},
           {"options", std::move(options)}};
 }
 

@@ -31,6 +31,7 @@ import { renderSetupResiduals } from './pages/setup_residuals.js';
 import { renderSetups } from './pages/setups.js';
 import { renderStory } from './pages/story.js';
 import { renderSummary } from './pages/summary.js';
+import { renderSurfaces } from './pages/surfaces.js';
 import { renderUncertainties } from './pages/uncertainties.js';
 import { renderValidation } from './pages/validation.js';
 import { renderVolumeCauses } from './pages/volume_causes.js';
@@ -41,6 +42,7 @@ export const renderers = {
   functions: renderFunctions,
   locations: renderLocations,
   rotary_axes: renderRotaryAxes,
+  surfaces: renderSurfaces,
   volume: renderVolume,
   residuals: renderResiduals,
   outliers: renderOutliers,

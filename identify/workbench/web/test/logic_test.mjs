@@ -98,6 +98,8 @@ test('words of variables', () => {
   assert.equal(directionWords({ name: 'dir_y' }, -1), 'all with Y coming towards −');
   assert.equal(unitText('um/K'), 'µm/K');
   assert.equal(unitText('urad'), 'µrad');
+  assert.equal(unitText('um/m3'), 'µm/m³');
+  assert.equal(unitText('urad/mm5/K2'), 'µrad/mm⁵/K²');
   assert.equal(unitText(null), '');
   assert.deepEqual(stepsOf({ name: 'tool', kind: 'category', values: ['short', 'long'] }, Float32Array.of(0, 1)), { at: [0, 1], text: ['short', 'long'] });
   assert.equal(stepsOf({ name: 'x', kind: 'position' }, Float32Array.of(0, 1)), null);

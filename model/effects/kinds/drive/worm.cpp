@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 
+#include "volcal/model/description/rotary_places.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
@@ -16,7 +16,6 @@ constexpr double kFullTurn = 2.0 * std::numbers::pi;
 constexpr int kFewestTeeth = 3;
 constexpr int kMostTeeth = 720;
 constexpr double kUsualTeeth = 90.0;
-constexpr double kSamePlace = 1e-4;  // rad
 
 Eigen::MatrixXd wave(const SetupView& view, AxisName axis, double period) {
   const Eigen::ArrayXd phase = positions_from_home(view, axis).array() * (kFullTurn / period);
@@ -25,15 +24,16 @@ Eigen::MatrixXd wave(const SetupView& view, AxisName axis, double period) {
   return drivers;
 }
 
-/// Whole numbers of periods a turn, as teeth of a wheel are; no more than half as many as the axis had
-/// different positions, beyond which a period cannot be told from a longer one.
+/// How many teeth a wheel may have to be told from one with fewer: less than half as many as the axis had
+/// different places. At half, as at the Nyquist frequency, one of the two amplitudes moves nothing where the
+/// places are regular.
+int most_teeth(const Campaign& campaign, AxisName axis) {
+  return std::min(kMostTeeth, most_periods(places_in_turn(campaign, axis)));
+}
+
+/// Whole numbers of periods a turn, as teeth of a wheel are; none where the places are too few for any.
 std::vector<Eigen::VectorXd> periods_of_wheels(const Campaign& campaign, AxisName axis) {
-  std::set<long long> places;
-  for (const Setup& setup : campaign.setups) {
-    for (const double position : setup.readings.position[index_of(axis)])
-      places.insert(std::llround(position / kSamePlace));
-  }
-  const int most = std::min(kMostTeeth, std::max(kFewestTeeth, static_cast<int>(places.size() / 2)));
+  const int most = most_teeth(campaign, axis);
   std::vector<Eigen::VectorXd> values;
   for (int teeth = kFewestTeeth; teeth <= most; ++teeth)
     values.emplace_back(Eigen::VectorXd::Constant(1, kFullTurn / teeth));
@@ -66,15 +66,19 @@ std::unique_ptr<FormulaEffect> make_worm_error(const EffectTable& table) {
                       kFullTurn / kMostTeeth, kFullTurn / kFewestTeeth);
   if (!(period.value > 0.0)) table.fail("its period is not positive", "give period_deg = 4.0");
   effect->add_shape(period);
-  effect->scan_by(
-      [axis = symbol.axis](const Campaign& campaign) { return periods_of_wheels(campaign, axis); });
+  effect->scan_by([axis = symbol.axis, given = period.value](const Campaign& campaign) {
+    auto values = periods_of_wheels(campaign, axis);
+    if (values.empty()) values.emplace_back(Eigen::VectorXd::Constant(1, given));
+    return values;
+  });
   return effect;
 }
 
-std::vector<EffectSpec> positioning_of_rotary_axes(const Campaign& campaign, const char* kind) {
+/// Of axes whose places tell waves of as many periods a turn.
+std::vector<EffectSpec> positioning_of_rotary_axes(const Campaign& campaign, const char* kind, int periods) {
   std::vector<EffectSpec> specs;
   for (const ErrorSymbol symbol : motions_in_campaign(campaign)) {
-    if (is_rotary(symbol.axis) && symbol.is_positioning())
+    if (is_rotary(symbol.axis) && symbol.is_positioning() && most_teeth(campaign, symbol.axis) >= periods)
       specs.push_back(effect_spec(kind, {{"symbol", symbol.name()}}));
   }
   return specs;
@@ -121,8 +125,9 @@ const EffectKind& worm_error_effect() {
        .keys = joined({{symbol_key("error motion of a rotary axis: EAA, EBB, ECC, or another")},
                        shape_keys("period", "deg", "period in positions of the axis: 360 / teeth"),
                        wave_keys("")})},
-      make_worm_error,
-      [](const Campaign& campaign) { return positioning_of_rotary_axes(campaign, "worm-error"); });
+      make_worm_error, [](const Campaign& campaign) {
+        return positioning_of_rotary_axes(campaign, "worm-error", kFewestTeeth);
+      });
   return kind;
 }
 
@@ -133,7 +138,7 @@ const EffectKind& ring_eccentricity_effect() {
        .source = "ISO 230-1, angular positioning; error 2 e / D of a ring of diameter D, eccentric by e",
        .keys = joined({{symbol_key("angle of the axis: EAA, EBB or ECC")}, wave_keys(" of the position")})},
       make_ring_eccentricity,
-      [](const Campaign& campaign) { return positioning_of_rotary_axes(campaign, "ring-eccentricity"); });
+      [](const Campaign& campaign) { return positioning_of_rotary_axes(campaign, "ring-eccentricity", 1); });
   return kind;
 }
 

@@ -191,27 +191,25 @@ class EmpiricalEffect final : public Effect {
   }
 
   Eigen::MatrixXd drivers(const SetupView& view, const Eigen::VectorXd& /*shape*/) const override {
-    const auto rows = static_cast<Eigen::Index>(view.rows());
-    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(rows, basis_.size());
-    if (!stated_.acts_on(view.campaign, view.setup) || !stated_.all_recorded(view.setup)) return values;
-    require_range();
-    Eigen::VectorXd factor = Eigen::VectorXd::Ones(rows);
-    for (const Variable& each : stated_.factors) {
-      const auto own = recorded_variable(view, each);
-      if (own->size() != rows) return values;
-      factor.array() *= own->array();
-    }
-    Eigen::MatrixXd places(static_cast<Eigen::Index>(stated_.drivers.size()), rows);
-    for (std::size_t i = 0; i < stated_.drivers.size(); ++i) {
-      const auto own = recorded_variable(view, stated_.drivers[i]);
-      if (own->size() != rows) return values;
-      places.row(static_cast<Eigen::Index>(i)) = own->transpose();
-    }
-    for (Eigen::Index row = 0; row < rows; ++row) {
-      const std::span<const double> place(places.col(row).data(), stated_.drivers.size());
-      values.row(row) = factor[row] * basis_.row(place).transpose();
+    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(view.rows()), basis_.size());
+    if (const auto at = places_of(view)) {
+      for (Eigen::Index row = 0; row < values.rows(); ++row)
+        values.row(row) = at->factor[row] * basis_.row(at->place(row)).transpose();
     }
     return values;
+  }
+
+  Eigen::MatrixXd faded_drivers(const SetupView& view) const override {
+    Eigen::MatrixXd lost;
+    const auto at = places_of(view);
+    if (!at) return lost;
+    for (Eigen::Index row = 0; row < at->factor.size(); ++row) {
+      if (!basis_.is_beyond(at->place(row))) continue;
+      if (lost.size() == 0) lost = Eigen::MatrixXd::Zero(at->factor.size(), basis_.size());
+      lost.row(row) =
+          at->factor[row] * (basis_.held_row(at->place(row)) - basis_.row(at->place(row))).transpose();
+    }
+    return lost;
   }
 
   std::size_t unrecorded(const SetupView& view) const override {
@@ -219,6 +217,36 @@ class EmpiricalEffect final : public Effect {
   }
 
  private:
+  /// Where on the surface the readings of a setup lie, and what its value there is multiplied with.
+  struct Places {
+    Eigen::MatrixXd values;  ///< drivers x readings
+    Eigen::VectorXd factor;
+
+    std::span<const double> place(Eigen::Index reading) const {
+      return {values.col(reading).data(), static_cast<std::size_t>(values.rows())};
+    }
+  };
+
+  /// Nothing where it does not act or a variable was not recorded.
+  std::optional<Places> places_of(const SetupView& view) const {
+    if (!stated_.acts_on(view.campaign, view.setup) || !stated_.all_recorded(view.setup)) return std::nullopt;
+    require_range();
+    const auto rows = static_cast<Eigen::Index>(view.rows());
+    Places places{Eigen::MatrixXd(static_cast<Eigen::Index>(stated_.drivers.size()), rows),
+                  Eigen::VectorXd::Ones(rows)};
+    for (const Variable& each : stated_.factors) {
+      const auto own = recorded_variable(view, each);
+      if (own->size() != rows) return std::nullopt;
+      places.factor.array() *= own->array();
+    }
+    for (std::size_t i = 0; i < stated_.drivers.size(); ++i) {
+      const auto own = recorded_variable(view, stated_.drivers[i]);
+      if (own->size() != rows) return std::nullopt;
+      places.values.row(static_cast<Eigen::Index>(i)) = own->transpose();
+    }
+    return places;
+  }
+
   void require_range() const {
     if (stated_.has_range) return;
     throw InputError(stated_.place, stated_.name() + " has no range",

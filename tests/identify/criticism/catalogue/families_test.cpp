@@ -100,6 +100,44 @@ TEST(Families, ADisplacementPaysForTheComponentsThatItNeeds) {
   EXPECT_GT(test.gain, test.score.lm - 3.0 * price);
 }
 
+/// Products of two columns that nothing imitates.
+ProjectedColumns apart(const Eigen::Vector2d& norm, const Eigen::Vector2d& score) {
+  ProjectedColumns projected;
+  projected.norm = norm;
+  projected.score = score;
+  projected.first = {0};
+  projected.grams = {norm.cwiseAbs2().asDiagonal()};
+  return projected;
+}
+
+/// A lead error of 4 um, and one whose sine is rounding at every position: it has no phase. One of 20 mm is
+/// larger than a model file takes.
+TEST(Families, AWaveIsSeenWithItsSineAndInASizeThatIsBelieved) {
+  const Family family = families_of(model_of_families(), "lead-error").at(0);
+  const Eigen::VectorXd largest = family.largest_amplitudes();
+  ASSERT_EQ(largest.size(), 2);
+  EXPECT_NEAR(largest[0], 1e-2, 1e-12);
+  const ScoreTest seen = family_score(family, apart({1e7, 1e7}, {4e8, 0.0}), 0, largest);
+  EXPECT_EQ(seen.dof, 2);
+  EXPECT_NEAR(seen.amplitude[0], 4e-6, 1e-15);
+  EXPECT_EQ(family_score(family, apart({1e7, 1e-6}, {4e8, 1e-6}), 0, largest).dof, 0);
+  EXPECT_EQ(family_score(family, apart({1e7, 1e7}, {2e12, 0.0}), 0, largest).dof, 0);
+}
+
+/// A displacement may lack a component.
+TEST(Families, ADisplacementIsSeenWithoutAComponentThatIsRounding) {
+  const Family family = families_of(model_of_families(), "tool-expansion").at(0);
+  ProjectedColumns projected;
+  projected.norm = Eigen::Vector3d(1e6, 1e6, 1e-9);
+  projected.score = Eigen::Vector3d(3e6, 0.0, 1e-9);
+  projected.first = {0};
+  projected.grams = {projected.norm.cwiseAbs2().asDiagonal()};
+  const ScoreTest test = family_score(family, projected, 0, family.largest_amplitudes());
+  EXPECT_EQ(test.dof, 2);
+  EXPECT_NEAR(test.amplitude[0], 3e-6, 1e-15);
+  EXPECT_EQ(test.amplitude[2], 0.0);
+}
+
 TEST(Families, OneAmplitudeAndOneSineAreNoComponents) {
   EXPECT_FALSE(families_of(model_of_families(), "reversal").at(0).independent_components());
   EXPECT_FALSE(families_of(model_of_families(), "lead-error").at(0).independent_components());

@@ -42,6 +42,24 @@ TEST(ElementaryFunctions, AreWhatTheirExpressionsSay) {
   }
 }
 
+/// In a unit that is a third as large all places and spans are three times as much, and the value is 3^power
+/// times as much.
+TEST(ElementaryFunctions, HaveThePowerOfTheirUnit) {
+  constexpr double kSmaller = 3.0;
+  const DriverRange driver{{Variable::Kind::Time}, 10.0, 3600.0};
+  for (const ElementaryFunction& function : elementary_functions(driver, 0.0)) {
+    const std::string text = function.text({"p", "q"});
+    EXPECT_EQ(function.is_span.size(), function.shapes()) << text;
+    for (std::vector<double> shape : function.starts) {
+      const double value = 1234.5, before = function.at(value, shape);
+      for (double& each : shape) each *= kSmaller;
+      EXPECT_NEAR(function.at(kSmaller * value, shape), std::pow(kSmaller, function.power) * before,
+                  1e-9 * std::abs(before))
+          << text;
+    }
+  }
+}
+
 TEST(ElementaryFunctions, AreAllDifferent) {
   std::set<std::string> texts;
   for (const ElementaryFunction& function : elementary_functions({{Variable::Kind::Time}, 0.0, 3600.0}, 0.0))

@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "tests/support/search_states.h"
+#include "volcal/identify/criticism/search/surface_search.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/kinds/open/custom.h"
+#include "volcal/model/effects/registry.h"
 
 namespace volcal {
 namespace {
@@ -81,6 +83,43 @@ TEST(FormulaSearch, MultipliesALawWithAFurtherVariable) {
   ASSERT_FALSE(asked.laws.empty());
   EXPECT_EQ(variables_of(asked.laws.front()), kOfTilt) << asked.laws.front().label;
   EXPECT_GT(asked.laws.front().log_evidence, asked.surface_evidence + 10.0);
+}
+
+/// With the surface in the model nothing is left beside it.
+TEST(FormulaSearch, LooksInThePlaceOfASurfaceOfTheSameVariables) {
+  const ModelState& before = state_of_growing_tilt();
+  SurfaceTest drawn;
+  const EffectKind& kind = *find_effect("empirical");
+  drawn.spec = kind.resolved(surface_of("EAZ", "y T_column"), before.model().views(), {});
+  drawn.effect = kind.make(drawn.spec, {});
+  drawn.finding.variables = variables_in("y T_column");
+  const ModelState with = before.with_surface(drawn, {});
+  ASSERT_EQ(with.surfaces().size(), 1u);
+  for (const char* drivers : {"y T_column", "T_column y"}) {
+    const AskedLaws asked = asked_laws(with, surface_of("EAZ", drivers));
+    EXPECT_EQ(asked.label, "surface EAZ by y T_column");
+    EXPECT_GT(asked.surface_evidence, 20.0) << drivers;
+    ASSERT_FALSE(asked.laws.empty());
+    EXPECT_EQ(variables_of(asked.laws.front()), kOfTilt) << asked.laws.front().label;
+    EXPECT_LT(asked.laws.front().log10_p, -20.0) << drivers;
+  }
+  EXPECT_LT(asked_laws(with, surface_of("EAZ", "y")).surface_evidence, 5.0) << "beside it nothing is left";
+}
+
+TEST(FormulaSearch, KnowsAFunctionOfTheSameVariables) {
+  const EffectSpec drawn = surface_of("EAZ", "y T_column");
+  EXPECT_TRUE(is_same_function(drawn, surface_of("EAZ", "T_column y")));
+  EXPECT_FALSE(is_same_function(drawn, surface_of("EAY", "y T_column")));
+  EXPECT_FALSE(is_same_function(drawn, surface_of("EAZ", "y")));
+  EffectSpec reversing = drawn;
+  reversing.options.set("factor", std::string("dir_y dir_x"));
+  EXPECT_FALSE(is_same_function(drawn, reversing));
+  EffectSpec turned = reversing;
+  turned.options.set("factor", std::string("dir_x dir_y"));
+  EXPECT_TRUE(is_same_function(reversing, turned));
+  EffectSpec in_part = drawn;
+  in_part.options.set("only", std::string("tool short"));
+  EXPECT_FALSE(is_same_function(drawn, in_part));
 }
 
 /// gain = 2 (log evidence + ln tried): the price of the choice is the only difference.

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <random>
 
+#include "volcal/model/description/units.h"
+
 namespace volcal {
 namespace {
 

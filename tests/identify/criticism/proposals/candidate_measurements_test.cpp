@@ -10,9 +10,13 @@
 #include <set>
 
 #include "tests/support/effect_campaign.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/proposals/candidates/hypothetical_readings.h"
 #include "volcal/identify/criticism/proposals/measurement_planner.h"
+#include "volcal/identify/criticism/proposals/next_measurement.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/statistics/normal.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
@@ -93,6 +97,38 @@ TEST(MeasurementMenu, PositionsOnAGridAreMovedInsideTheTravel) {
     distinct.insert(std::lround(q * 1e6));
   }
   EXPECT_EQ(distinct.size(), jittered[0].readings());
+}
+
+/// Places 0, 100, 200, 300 mm, some of them recorded once more 1 um further and two half a step beside the
+/// grid: neighbours are 100 mm apart, or 50 mm twice.
+TEST(MeasurementMenu, TheStepOfAGridIsTheOneThatMostPositionsShare) {
+  const std::vector<std::vector<double>> places = {
+      {0.1, 0.2, 0.3, 0.4},
+      {0.1, 0.2, 0.200001, 0.3, 0.3000015, 0.4},
+      {0.1, 0.100001, 0.2, 0.200001, 0.3, 0.300001, 0.4, 0.400001},
+      {0.1, 0.2, 0.3, 0.4, 0.5, 0.55, 0.6, 0.7},
+  };
+  for (const auto& positions : places) {
+    Campaign campaign = testing_support::effect_campaign();
+    for (volcal::Setup& setup : campaign.setups) {
+      auto& x = setup.readings.position[index_of(AxisName::X)];
+      for (std::size_t row = 0; row < x.size(); ++row) x[row] = positions[row % positions.size()];
+    }
+    const auto jittered = of_action(possible(campaign), "jittered-positions");
+    ASSERT_FALSE(jittered.empty()) << positions.size();
+    EXPECT_NE(jittered[0].words.find("X off its step of 100 mm"), std::string::npos) << jittered[0].words;
+  }
+}
+
+/// Where no two gaps are the same, the smallest: 50 mm of 0, 50, 150 and 300 mm.
+TEST(MeasurementMenu, OfGapsThatAllDifferTheSmallestCounts) {
+  Campaign campaign = testing_support::effect_campaign();
+  auto& x = campaign.setups.front().readings.position[index_of(AxisName::X)];
+  constexpr double kPlaces[] = {0.1, 0.15, 0.25, 0.4};
+  for (std::size_t row = 0; row < x.size(); ++row) x[row] = kPlaces[row % 4];
+  const auto jittered = of_action(possible(campaign), "jittered-positions");
+  ASSERT_FALSE(jittered.empty());
+  EXPECT_NE(jittered[0].words.find("X off its step of 50 mm"), std::string::npos) << jittered[0].words;
 }
 
 TEST(MeasurementMenu, OneSidedApproachesAreReversed) {
@@ -221,6 +257,63 @@ TEST_F(Planner, AgreesWithStackedMatrices) {
 }
 
 /// More readings never take separation away.
+/// A drift of the station P1 against a dead path of the laser that stands there, `size` m/s large, the one as
+/// likely as the other; predictions in the volume differ by 0.3 um, U 0.5 um or a tenth of it.
+class ProposedForASet : public Planner {
+ protected:
+  MeasurementProposal proposed(double size, bool matters) const {
+    Diagnosis diagnosis;
+    diagnosis.verdict = Verdict::OneOf;
+    diagnosis.one_of = {found("station-drift", size), found("dead-path", size)};
+    SetFinding set;
+    set.chosen = 0;
+    set.members.resize(2);
+    set.members[0].difference = set.members[0].difference_u = 0.0;
+    set.members[1].difference = 0.3e-6;
+    set.members[1].difference_u = (matters ? 0.05e-6 : 0.5e-6) / kCoverageFactor;
+    set.farthest = 1;
+    set.matters = matters;
+    diagnosis.sets = {set};
+    add_next_measurements(state_, {}, diagnosis);
+    EXPECT_EQ(diagnosis.proposals.size(), 1u);
+    return diagnosis.proposals.front();
+  }
+
+ private:
+  EffectFinding found(const std::string& kind, double size) const {
+    const auto family = std::ranges::find_if(families_, [&](const Family& each) {
+      return each.effect && each.name().kind == kind && each.name().driver == "time" &&
+             each.name().target.find("P1") != std::string::npos;
+    });
+    EXPECT_NE(family, families_.end());
+    EffectFinding finding;
+    finding.name = family->name();
+    finding.label = family->label();
+    finding.amplitudes.resize(static_cast<std::size_t>(family->amplitudes()));
+    for (AmplitudeFigure& amplitude : finding.amplitudes) amplitude.value = size;
+    return finding;
+  }
+};
+
+TEST_F(ProposedForASet, WhatSeparatesIsMeasuredWhetherOrNotItMatters) {
+  constexpr double kLarge = 50e-6 / 3600.0;
+  for (const bool matters : {true, false}) {
+    const MeasurementProposal proposal = proposed(kLarge, matters);
+    EXPECT_EQ(proposal.finding.code, FindingCode::MeasurementSeparates);
+    EXPECT_GT(proposal.gain, kThresholds.worth_a_name);
+  }
+}
+
+TEST_F(ProposedForASet, WhereNothingSeparatesItIsSaidWhetherThatMatters) {
+  constexpr double kSmall = 0.01e-6 / 3600.0;
+  const Finding open = proposed(kSmall, true).finding, same = proposed(kSmall, false).finding;
+  EXPECT_EQ(open.code, FindingCode::MeasurementNoneSeparates);
+  EXPECT_FALSE(open.has("difference"));
+  EXPECT_EQ(same.code, FindingCode::MeasurementNoneSeparates);
+  EXPECT_DOUBLE_EQ(same.number("difference").si, 0.3e-6);
+  EXPECT_DOUBLE_EQ(same.number("U").si, 0.5e-6);
+}
+
 TEST_F(Planner, SeparationGrows) {
   const HypotheticalCampaign hypothetical(campaign_, result_, model_.noise_groups(), possible(campaign_));
   const MeasurementPlanner planner(state_, {planned("station-drift"), planned("dead-path")}, 0, hypothetical);

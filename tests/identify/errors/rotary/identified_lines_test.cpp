@@ -55,6 +55,22 @@ TEST(IdentifiedLines, CarryTheUncertaintyOfTheCarryingAxes) {
   EXPECT_NEAR(c.covariance_at(0.1)(0, 0) * 1e12, 1.0025 + 0.02 - 0.01, 1e-9);
 }
 
+/// The line of A has no displacement along A and no tilt about it; that of C none along C, but a turn about
+/// it through EC0A. A head C that carries B has no displacement of its own, and nothing carries it.
+TEST(IdentifiedLines, TellWhatIsZeroByConvention) {
+  const auto lines = identified_lines(trunnion_lines());
+  EXPECT_EQ(lines[0].by_convention, (std::array{true, false, false, true, false, false}));
+  EXPECT_FALSE(lines[1].by_convention[0]);
+  EXPECT_FALSE(lines[1].by_convention[1]);
+  const FitResult head =
+      testing::result_with(testing_support::machine_of(testing::kHead),
+                           {.locations = {{"EA0C", 1e-6}, {"EB0C", 2e-6}, {"EX0B", 3e-6}}}, 1);
+  for (const IdentifiedLine& line : identified_lines(head)) {
+    if (line.axis != AxisName::C) continue;
+    EXPECT_EQ(line.by_convention, (std::array{true, true, true, false, false, true}));
+  }
+}
+
 TEST(IdentifiedLines, AreNoneWithoutLocationErrors) {
   const Machine machine = testing::rotary_machine(testing::kTrunnion);
   EXPECT_TRUE(identified_lines(testing::result_with(machine, {.locations = {{"EC0Y", 1e-6}}}, 1)).empty());

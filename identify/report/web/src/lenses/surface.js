@@ -6,6 +6,8 @@ import { color, series, transparent } from '../theme.js';
 const kBands = 12; // of the heat map, so that their edges are contours
 const kPixels = 12; // of the picture, between neighbouring places
 
+const kUnnamed = 'What has no name, as the readings show it';
+
 const largest = (values) => Math.max(...values.map(Math.abs), 1e-12);
 
 /** Value in −1..1 as a colour: one hue below zero, another above, the page's colour at zero. */
@@ -50,6 +52,12 @@ function scale(isSize) {
   return [0, 0.25, 0.5, 0.75, 1].map((at) => [at, `rgb(${shade(isSize ? at : 2 * at - 1, rgb).join(',')})`]);
 }
 
+/** Where the label of a place stands, so that it stays on the map: below what is high up, inwards at the sides. */
+function labelAt(axes, at) {
+  const [u, v] = axes.map((axis, i) => (at[i] - axis.places[0]) / (axis.places.at(-1) - axis.places[0]));
+  return { ax: 0, ay: v > 0.85 ? 26 : -26, xanchor: u > 0.8 ? 'right' : u < 0.2 ? 'left' : 'center' };
+}
+
 /** Values on a grid of two variables, with the places of the readings. */
 export function heatMap(data, height = 560) {
   const [x, y] = data.axes;
@@ -73,7 +81,7 @@ export function heatMap(data, height = 560) {
     layout: layout2d({
       height, margin: { r: 70, t: 24 }, hovermode: 'closest',
       annotations: data.quiet ? [] : [{
-        x: data.at[0], y: data.at[1], ax: 0, ay: -26, arrowhead: 0, arrowcolor: color('text'), bgcolor: color('page'), font: { size: 12, color: color('text') },
+        x: data.at[0], y: data.at[1], ...labelAt(data.axes, data.at), arrowhead: 0, arrowcolor: color('text'), bgcolor: color('page'), font: { size: 12, color: color('text') },
         text: worded(data.largest, data.largest_U95),
       }],
       x: { title: plain(x.title), range: ends(x), showgrid: false, zeroline: false }, y: { title: plain(y.title), range: ends(y), showgrid: false, zeroline: false },
@@ -125,9 +133,9 @@ export function curve(data) {
 }
 
 /** The pictures of a surface or curve, largest first: [{ caption, make }]. */
-export function surfaceFigures(data) {
+export function surfaceFigures(data, title = kUnnamed) {
   const where = data.third ? `, at ${data.third} = ${significant(data.third_at, 3)}` : '';
-  const whole = { caption: `What has no name, as the readings show it${where}`, make: () => (data.axes.length === 1 ? curve(data) : heatMap(data)) };
+  const whole = { caption: `${title}${where}`, make: () => (data.axes.length === 1 ? curve(data) : heatMap(data)) };
   const others = data.axes.length === 1 ? [] : [0, 1].map((along) => ({ caption: `Cuts along ${data.axes[along].name}, 95 % bands`, make: () => cuts(data, along) }));
   return [whole, ...others];
 }
@@ -141,13 +149,19 @@ function plotOf({ make, caption }) {
 const place = (data) => [...data.axes.map((axis) => axis.name), ...(data.third ? [data.third] : [])]
   .map((name, i) => `${name} = ${significant(data.at[i], 3)}`).join(', ');
 
-export function renderSurface(body, data) {
+/** Its largest value, its picture and its cuts. `over`: what its RMS is taken over; `title`: of the picture. */
+export function drawSurface(body, data, { over, title }) {
   const times = data.factor === '' ? '' : `, times ${data.factor}`;
   body.append(el('p', { class: 'surface' }, [
-    el('strong', {}, data.label), `: ${significant(data.largest, 3)} ± ${significant(data.largest_U95, 2)} ${data.unit} (95 %) at ${place(data)}${times}; RMS over the readings ${significant(data.rms, 2)} ${data.unit}.`,
+    el('strong', {}, data.label), `: ${significant(data.largest, 3)} ± ${significant(data.largest_U95, 2)} ${data.unit} (95 %) at ${place(data)}${times}; RMS over ${over} ${significant(data.rms, 2)} ${data.unit}.`,
   ]));
-  const [whole, ...cutsAlong] = surfaceFigures(data).map(plotOf);
+  const [whole, ...cutsAlong] = surfaceFigures(data, title).map(plotOf);
   body.append(cutsAlong.length === 0 ? whole : el('div', { class: 'pair' }, [whole, el('div', { class: 'cuts' }, cutsAlong)]));
+}
+
+/** One that a diagnosis has drawn, with its laws. */
+export function renderSurface(body, data) {
+  drawSurface(body, data, { over: 'the readings', title: kUnnamed });
   for (const [k, formula] of data.formulas.entries()) {
     body.append(el('p', {}, [k === 0 ? 'A law that explains as much: ' : 'Or: ', el('strong', {}, formula.label), formula.shape === '' ? '' : `, ${formula.shape}`, `: ${significant(formula.amplitude, 4)} ± ${significant(formula.U95, 2)} ${formula.unit}.`]));
   }

@@ -1,6 +1,6 @@
 import { decimalsFor, fixed, note, symbolMark, table } from '../dom.js';
 
-const stateText = { off: 'left out of the model', invisible: 'not visible', identified: '' };
+const stateText = { off: 'left out of the model', convention: 'zero by convention', invisible: 'not visible', identified: '' };
 
 export function renderLocations(body, data) {
   const decimals = Math.max(1, ...data.rows.filter((row) => row.state === 'identified').map((row) => decimalsFor(row.U95)));

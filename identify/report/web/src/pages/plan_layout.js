@@ -121,7 +121,8 @@ export function renderPlanLayout(body, data) {
   body.append(el('p', {}, data.replaced
     ? data.replaced
     : [el('strong', {}, `${fixed(change, 1)} % ${data.ratio <= 1 ? 'less' : 'more'}`), ` than ${data.against}: ${data.target}.`]));
-  if (data.invisible.length > 0) body.append(el('ul', { class: 'messages' }, data.invisible.map((text) => el('li', {}, text))));
+  const messages = [...data.invisible, ...data.messages];
+  if (messages.length > 0) body.append(el('ul', { class: 'messages' }, messages.map((text) => el('li', {}, text))));
   body.append(figures(data.campaigns));
   const node = el('div', { class: 'plot scene' });
   const stations = el('div', {});

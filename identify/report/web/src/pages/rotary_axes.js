@@ -24,20 +24,26 @@ function motionsOf(model) {
   const axes = [...new Set(model.motions.map(({ axis }) => axis))];
   return axes.flatMap((axis) => [
     el('h3', { class: `axis-${axis}` }, `Error motions of ${axis}`),
+    ...model.carried.filter(({ carrying }) => carrying === axis).map(({ carried, motions }) => note(
+      `One wave a turn of ${motions.join(' and ')} is also what a displacement of ${carried} along itself does: it turns with ${axis}, and no location error of ${carried} holds it.`,
+    )),
     el('div', { class: 'motions' }, model.motions.filter((motion) => motion.axis === axis).map(motionPanel)),
   ]);
 }
 
 function linesTable(model) {
   const rows = model.lines.flatMap((line) => line.errors.map((error) => ({ ...error, axis: line.axis, along: line.along })));
-  const decimals = Math.max(1, ...rows.filter(({ visible }) => visible).map(({ U95 }) => decimalsFor(U95)));
+  const measured = rows.filter(({ visible, by_convention: convention }) => visible && !convention);
+  const decimals = Math.max(1, ...measured.map(({ U95 }) => decimalsFor(U95)));
+  const number = (key) => (row) => (row.by_convention ? '–' : fixed(row[key], decimals));
+  const state = (row) => (row.by_convention ? 'zero by convention' : row.visible ? '' : 'not visible');
   return table([
     { name: 'Error', align: 'left', cell: (row) => symbolMark(row.symbol, row.axis) },
-    { name: 'Value', cell: (row) => fixed(row.value, decimals) },
-    { name: 'U95', cell: (row) => fixed(row.U95, decimals) },
+    { name: 'Value', cell: number('value') },
+    { name: 'U95', cell: number('U95') },
     { name: 'Unit', align: 'left', cell: (row) => row.unit },
-    { name: '', align: 'left', cell: (row) => (row.visible ? '' : 'not visible') },
-  ], rows, { rowClass: (row) => (row.visible ? null : 'dim'), caption: 'Axis average lines at machine zero' });
+    { name: '', align: 'left', cell: state },
+  ], rows, { rowClass: (row) => (state(row) === '' ? null : 'dim'), caption: 'Axis average lines at machine zero' });
 }
 
 function factorSlider(label, factors, key, redraw) {

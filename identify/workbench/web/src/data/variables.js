@@ -2,7 +2,7 @@
 import { distinct } from './statistics.js';
 
 /** Unit of the program's files as it is printed. */
-export const unitText = (unit) => String(unit ?? '').replace(/\bum\b/g, 'µm').replace(/\burad\b/g, 'µrad').replace(/m2\b/g, 'm²').replace(/m3\b/g, 'm³').replace(/\bdegC\b/g, '°C').replace(/\bdeg\b/g, '°');
+export const unitText = (unit) => String(unit ?? '').replace(/\bum\b/g, 'µm').replace(/\burad\b/g, 'µrad').replace(/([a-zA-Z])([2-9])\b/g, (_, base, power) => base + '²³⁴⁵⁶⁷⁸⁹'[power - 2]).replace(/\bdegC\b/g, '°C').replace(/\bdeg\b/g, '°');
 export const titleOf = (variable) => (variable.unit ? `${variable.label} [${unitText(variable.unit)}]` : variable.label);
 
 const isTime = (column) => column.kind === 'time' || /^time(_s)?$/.test(column.name);

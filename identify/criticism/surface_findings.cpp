@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "volcal/identify/criticism/formulas/formula_search.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/model/effects/recorded_variable.h"
+#include "volcal/model/functions/drawn_places.h"
 #include "volcal/model/functions/tensor_basis.h"
 
 namespace volcal {
@@ -15,7 +17,6 @@ namespace {
 
 constexpr double kFreeShare = 0.95;  // of what readings see of a function, imitated
 constexpr int kPowers = 3;
-constexpr Eigen::Index kPlacesOfCurve = 121, kPlacesOfSurface = 41;
 constexpr std::size_t kMostDots = 1500;
 
 /// Coefficients of a power of one variable, constant along the others.
@@ -156,31 +157,11 @@ class SurfaceSummary {
 
   /// Over the range of the first two drivers, a third in the middle of its range; a factor is 1.
   void draw() {
-    const auto& sides = basis_.sides();
-    std::vector<double> place;
-    for (const TensorBasis::Side& side : sides) place.push_back(0.5 * (side.from + side.to));
-    const Eigen::Index first = sides.size() == 1 ? kPlacesOfCurve : kPlacesOfSurface;
-    const Eigen::Index second = sides.size() == 1 ? 1 : kPlacesOfSurface;
-    const auto at = [](const TensorBasis::Side& side, Eigen::Index i, Eigen::Index count) {
-      return side.from + (side.to - side.from) * static_cast<double>(i) / static_cast<double>(count - 1);
-    };
-    Eigen::MatrixXd rows(first * second, basis_.size());
-    for (Eigen::Index i = 0; i < first; ++i) {
-      place[0] = at(sides[0], i, first);
-      for (Eigen::Index j = 0; j < second; ++j) {
-        if (second > 1) place[1] = at(sides[1], j, second);
-        rows.row(i * second + j) = basis_.row(place).transpose();
-      }
-    }
-    SurfaceFigure& figure = out_.figure;
-    figure.places.resize(sides.size() == 1 ? 1 : 2);
-    for (Eigen::Index i = 0; i < first; ++i) figure.places[0].push_back(at(sides[0], i, first));
-    if (second > 1) {
-      for (Eigen::Index j = 0; j < second; ++j) figure.places[1].push_back(at(sides[1], j, second));
-    }
-    figure.value = rows * coefficients_;
-    figure.u = uncertainty(rows);
-    if (sides.size() > 2) figure.third = place[2];
+    DrawnPlaces drawn = drawn_places(basis_);
+    out_.figure.value = drawn.rows * coefficients_;
+    out_.figure.u = uncertainty(drawn.rows);
+    out_.figure.places = std::move(drawn.axes);
+    if (basis_.sides().size() > 2) out_.figure.third = drawn.third;
   }
 
   const ModelState& state_;

@@ -12,12 +12,14 @@ void add_conditions(const EffectReach& reach, std::set<Variable>& acting) {
   if (reach.feed) acting.insert({Variable::Kind::Feed});
 }
 
-std::set<Variable> conditions_of_surfaces(const FitResult& result, const Conditions& conditions) {
+/// Of the effects of any tool, or of its curves and surfaces alone.
+std::set<Variable> conditions_of_effects(const FitResult& result, const Conditions& conditions,
+                                         bool surfaces_alone) {
   std::set<Variable> acting;
   for (const Tool& tool : result.machine.tools) {
     const MachineEffects effects(result, tool, conditions);
     for (std::size_t e = 0; e < effects.effect_count(); ++e) {
-      if (effects.is_surface(e)) add_conditions(effects.reach(e), acting);
+      if (!surfaces_alone || effects.is_surface(e)) add_conditions(effects.reach(e), acting);
     }
   }
   return acting;
@@ -33,20 +35,16 @@ std::optional<RecordedRange> recorded_range(const FitResult& result, const Varia
 }  // namespace
 
 std::set<Variable> conditions_that_act(const FitResult& result, const Conditions& conditions) {
-  std::set<Variable> acting;
+  std::set<Variable> acting = conditions_of_effects(result, conditions, false);
   for (const Axis& axis : result.machine.axes) {
     if (axis.expansion) acting.insert(temperature_of(axis.expansion->channel));
-  }
-  for (const Tool& tool : result.machine.tools) {
-    const MachineEffects effects(result, tool, conditions);
-    for (std::size_t e = 0; e < effects.effect_count(); ++e) add_conditions(effects.reach(e), acting);
   }
   return acting;
 }
 
 std::vector<Finding> conditions_beyond_readings(const FitResult& result, const Conditions& conditions) {
   const std::set<Variable> acting = conditions_that_act(result, conditions);
-  const std::set<Variable> of_surfaces = conditions_of_surfaces(result, conditions);
+  const std::set<Variable> of_surfaces = conditions_of_effects(result, conditions, true);
   std::vector<Finding> findings;
   for (const StatedCondition& condition : list_conditions(result, conditions)) {
     const bool matters = condition.origin == kAsStated ? acting.contains(condition.variable)

@@ -245,7 +245,8 @@ class Realignment {
         }
       }
     }
-    for (std::size_t i = 0; i < angles.size(); ++i) rows.row(layout.blocks[i].offset) = squareness_rows()[i];
+    const std::array<Functional, 3> squareness = squareness_rows();
+    for (std::size_t i = 0; i < angles.size(); ++i) rows.row(layout.blocks[i].offset) = squareness[i];
     for (std::size_t i = angles.size(); i < layout.blocks.size(); ++i) {
       const ParameterBlock& block = layout.blocks[i];
       rows.block(block.offset, old_.layout.find_block(block.name)->offset, block.size(), block.size())

@@ -246,8 +246,7 @@ std::optional<PoseErrorRows> ErrorField::faded_rows(const AxisPosition& position
       PoseErrorRows::Zero(6, static_cast<Eigen::Index>(condition_parameters_.size()));
   add_effect_rows(levers, position, drivers, of_conditions);
   PoseErrorRows rows = PoseErrorRows::Zero(6, layout_.size);
-  for (std::size_t i = 0; i < condition_parameters_.size(); ++i)
-    rows.col(condition_parameters_[i]) = of_conditions.col(static_cast<Eigen::Index>(i));
+  rows(Eigen::all, condition_parameters_) = of_conditions;
   return rows;
 }
 
@@ -279,9 +278,7 @@ PoseErrorRows ErrorField::rows_at(const AxisPosition& position, const AxisPositi
                                   const ApproachDirection& direction) const {
   PoseErrorRows rows = pose_error_rows(chain_, layout_, position, tool_.offset, functions_at);
   if (tool_parameter_ >= 0) rows.block<3, 3>(0, tool_parameter_) = chain_.nominal_rotation_wt(position);
-  const PoseErrorRows of_conditions = condition_rows(position, direction);
-  for (std::size_t i = 0; i < condition_parameters_.size(); ++i)
-    rows.col(condition_parameters_[i]) = of_conditions.col(static_cast<Eigen::Index>(i));
+  rows(Eigen::all, condition_parameters_) = condition_rows(position, direction);
   return rows;
 }
 

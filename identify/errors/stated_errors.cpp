@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <memory>
-#include <set>
 #include <string>
 #include <utility>
 
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/variable.h"
+#include "volcal/model/effects/conditions_of_effect.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/model/observation/campaign_binding.h"
@@ -81,17 +81,6 @@ class StatedLayout {
   std::vector<double> values_;
 };
 
-/// Temperatures that drive an effect: of its key, or among what its law or surface is written of.
-std::set<std::string> channels_of(const EffectSpec& spec) {
-  if (const auto channel = spec.options.text("temperature")) return {*channel};
-  std::set<std::string> channels;
-  for (const std::string& word : words_in(find_effect(spec.kind)->make(spec, {})->name().driver)) {
-    const auto variable = Variable::parse_written(word);
-    if (variable && variable->kind == Variable::Kind::Temperature) channels.insert(variable->subject);
-  }
-  return channels;
-}
-
 }  // namespace
 
 FitResult stated_result(const Machine& machine, const ModelSpec& model) {
@@ -112,8 +101,11 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model) {
     if (axis.expansion) result.conditions.temperature_degC[axis.expansion->channel] = kReference;
   }
   for (const EffectSpec& effect : model.effects) {
-    for (const std::string& channel : channels_of(effect))
-      result.conditions.temperature_degC[channel] = kReference;
+    for (const Variable& each :
+         conditions_of_effect(effect, *find_effect(effect.kind)->make(effect, model.file))) {
+      if (each.kind == Variable::Kind::Temperature)
+        result.conditions.temperature_degC[each.subject] = kReference;
+    }
   }
   result.conditions.time = model.conditions.time.value_or(RecordedRange{});
   result.conditions.feed = model.conditions.feed.value_or(RecordedRange{});

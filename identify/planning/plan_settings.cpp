@@ -11,23 +11,12 @@
 #include "volcal/model/description/parallel_axes.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/description/variable.h"
+#include "volcal/model/effects/conditions_of_effect.h"
 #include "volcal/model/effects/effect.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
 namespace {
-
-/// Columns of what it depends on that changes at a pose: temperatures, feed.
-std::set<std::string> columns_of_conditions(const EffectSpec& spec, const Effect& effect) {
-  std::set<std::string> columns;
-  if (const auto channel = spec.options.text("temperature"))
-    columns.insert(temperature_of(*channel).column());
-  for (const std::string& word : words_in(effect.name().driver)) {
-    const auto variable = Variable::parse_written(word);
-    if (variable && variable->changes_at_rest()) columns.insert(variable->column());
-  }
-  return columns;
-}
 
 /// Rather than to the machine.
 bool belongs_to_campaign(const EffectSpec& spec, const Effect& effect) {
@@ -55,10 +44,10 @@ std::optional<Finding> hold_effects_unseen(const Campaign& planned, ModelSpec& m
   std::erase_if(model.effects, [&](const EffectSpec& spec) {
     const std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, model.file);
     if (can_act(planned, *effect)) return false;
-    const std::set<std::string> own = columns_of_conditions(spec, *effect);
+    const std::set<Variable> own = conditions_of_effect(spec, *effect);
     if (own.empty() && !belongs_to_campaign(spec, *effect)) return false;
     labels.push_back(effect_label(*effect));
-    columns.insert(own.begin(), own.end());
+    for (const Variable& each : own) columns.insert(each.column());
     return true;
   });
   if (labels.empty()) return std::nullopt;

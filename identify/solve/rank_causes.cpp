@@ -56,18 +56,9 @@ std::size_t tools_in_use(const Campaign& campaign) {
 
 /// Positions of an axis that differ, ascending.
 std::vector<double> different_positions(const Campaign& campaign, AxisName axis) {
-  std::vector<double> all;
-  for (const Setup& setup : campaign.setups) {
-    const std::vector<bool> left_out = setup.rows_left_out();
-    const std::vector<double>& position = setup.readings.position[index_of(axis)];
-    for (std::size_t row = 0; row < position.size(); ++row) {
-      if (!left_out[row]) all.push_back(position[row]);
-    }
-  }
-  std::ranges::sort(all);
   const double same = kLeastApart * campaign.machine.axis(axis).travel();
   std::vector<double> different;
-  for (const double position : all) {
+  for (const double position : used_positions(campaign, axis)) {
     if (different.empty() || position - different.back() > same) different.push_back(position);
   }
   return different;

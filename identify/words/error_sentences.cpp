@@ -56,7 +56,7 @@ std::string rotary_not_in_model(const Finding& finding) {
       "residuals{}; "
       "identify them by volcal fit from readings that move {}",
       axis,
-      finding.flag("in_uncertainty") ? ", what they may be (1 mm, 1 mrad) in the uncertainty of the model"
+      finding.flag("in_uncertainty") ? ", what they may be by their prior in the uncertainty of the model"
                                      : "",
       axis);
 }

@@ -12,20 +12,26 @@ constexpr double kSamePlace = 1e-4;  // rad
 constexpr std::size_t kFewestRegular = 3;
 
 std::vector<double> angles_in_turn(const Campaign& campaign, AxisName axis) {
-  std::vector<double> angles;
-  for (const Setup& setup : campaign.setups) {
-    const std::vector<bool> left_out = setup.rows_left_out();
-    const std::vector<double>& position = setup.readings.position[index_of(axis)];
-    for (std::size_t row = 0; row < position.size(); ++row) {
-      if (!left_out[row])
-        angles.push_back(position[row] - kWholeTurn * std::floor(position[row] / kWholeTurn));
-    }
-  }
+  std::vector<double> angles = used_positions(campaign, axis);
+  for (double& angle : angles) angle -= kWholeTurn * std::floor(angle / kWholeTurn);
   std::ranges::sort(angles);
   return angles;
 }
 
 }  // namespace
+
+std::vector<double> used_positions(const Campaign& campaign, AxisName axis) {
+  std::vector<double> used;
+  for (const Setup& setup : campaign.setups) {
+    const std::vector<bool> left_out = setup.rows_left_out();
+    const std::vector<double>& position = setup.readings.position[index_of(axis)];
+    for (std::size_t row = 0; row < position.size(); ++row) {
+      if (!left_out[row]) used.push_back(position[row]);
+    }
+  }
+  std::ranges::sort(used);
+  return used;
+}
 
 std::vector<double> places_in_turn(const Campaign& campaign, AxisName axis) {
   std::vector<double> places;

@@ -1,5 +1,6 @@
 #pragma once
-/// Where a rotary axis stood in a campaign: places within a turn, those whole turns apart being one.
+/// Where an axis stood in a campaign; of a rotary axis places within a turn, those whole turns apart being
+/// one.
 
 #include <vector>
 
@@ -7,6 +8,9 @@
 #include "volcal/model/description/symbols.h"
 
 namespace volcal {
+
+/// Positions of an axis at the readings that are not left out, ascending, m or rad.
+std::vector<double> used_positions(const Campaign& campaign, AxisName axis);
 
 /// rad from 0 to a full turn, ascending; positions nearer to each other than 1e-4 rad are one place. Readings
 /// that are left out do not count.

@@ -56,7 +56,7 @@ class Proposer {
   }
 
  private:
-  /// What is to be told apart.
+  /// What is to be separated.
   struct Alternatives {
     std::vector<PlannedHypothesis> members;
     const SetFinding*

@@ -75,19 +75,25 @@ TEST(ErrorBudget, SharesAddUpToTheWholeWhateverCancels) {
   EXPECT_NEAR(total(budget.causes), 1.0, 1e-9);
 }
 
+/// X, Y and Z to either side of 0, and a table that turns once.
+Machine machine_with_table(double half_travel) {
+  Machine machine = machine_of("w C' b X Y Z t");
+  machine.tools = {{"short", {0.0, 0.0, -0.1}, 0.0}};
+  for (Axis& axis : machine.axes) {
+    axis.travel_max = is_rotary(axis.name) ? std::numbers::pi : half_travel;
+    axis.travel_min = -axis.travel_max;
+  }
+  return machine;
+}
+
 /// A table whose angle is wrong by a sin q moves a point at the distance r of its axis by r a sin q: the mean
 /// square is a^2 / 2 times that of r, which is L^2 over five positions of X and of Y from -L to L, their mean
 /// squares L^2 / 2 each. Nothing of it is left with the table at 0, and no rigid motion takes any of it.
 TEST(ErrorBudget, IsOverTheTravelOfRotaryAxesWithErrors) {
   constexpr double kHalfTravel = 0.3, kAngle = 20e-6;
-  Machine machine = machine_of("w C' b X Y Z t");
-  machine.tools = {{"short", {0.0, 0.0, -0.1}, 0.0}};
-  for (Axis& axis : machine.axes) {
-    axis.travel_max = is_rotary(axis.name) ? std::numbers::pi : kHalfTravel;
-    axis.travel_min = -axis.travel_max;
-  }
-  const FitResult result = testing::result_with(
-      machine, {.functions = {{"ECC", [](double q) { return kAngle * std::sin(q); }}}}, 72);
+  const FitResult result =
+      testing::result_with(machine_with_table(kHalfTravel),
+                           {.functions = {{"ECC", [](double q) { return kAngle * std::sin(q); }}}}, 72);
   const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
   EXPECT_EQ(budget.turned, std::vector{AxisName::C});
   EXPECT_TRUE(budget.at_rest.empty());
@@ -102,14 +108,9 @@ TEST(ErrorBudget, IsOverTheTravelOfRotaryAxesWithErrors) {
 /// A reversal of the table's angle is +-b/2, as often either way.
 TEST(ErrorBudget, ApproachesRotaryAxesFromBothSides) {
   constexpr double kHalfTravel = 0.3, kJump = 10e-6;
-  Machine machine = machine_of("w C' b X Y Z t");
-  machine.tools = {{"short", {0.0, 0.0, -0.1}, 0.0}};
-  for (Axis& axis : machine.axes) {
-    axis.travel_max = is_rotary(axis.name) ? std::numbers::pi : kHalfTravel;
-    axis.travel_min = -axis.travel_max;
-  }
   const FitResult result = testing::result_with(
-      machine, {.functions = {{"ECC", [](double) { return 0.0; }}}, .reversals = {{"ECC", kJump}}}, 72);
+      machine_with_table(kHalfTravel),
+      {.functions = {{"ECC", [](double) { return 0.0; }}}, .reversals = {{"ECC", kJump}}}, 72);
   const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
   EXPECT_NEAR(budget.total.rms, 0.5 * kJump * kHalfTravel, 0.02 * 0.5 * kJump * kHalfTravel);
 }

@@ -587,7 +587,7 @@ const std::vector<WordedFinding>& examples() {
        "of the errors of axis C the tables hold R-POS alone"},
       {{FindingCode::RotaryErrorsNotInModel, {{"axis", "C"}, {"in_uncertainty", true}}},
        "axis C moves in these readings, and the model has no errors of it: what they do is in the residuals, "
-       "what they may be (1 mm, 1 mrad) in the uncertainty of the model; identify them by volcal fit from "
+       "what they may be by their prior in the uncertainty of the model; identify them by volcal fit from "
        "readings that move C"},
       {{FindingCode::RotaryErrorsNotInModel, {{"axis", "C"}}},
        "axis C moves in these readings, and the model has no errors of it: what they do is in the residuals; "

@@ -46,6 +46,38 @@ TEST(TensorBasis, NodesAreTheCoefficientsOfAStraightFunction) {
     EXPECT_NEAR(basis.row(place).dot(coefficients), place[0] * place[1], 1e-10);
 }
 
+/// Beyond the first range by half a piece and by two of its four pieces: half of it, nothing.
+TEST(TensorBasis, FadesOutBeyondItsRangeAndIsHeldWhereAskedFor) {
+  const TensorBasis basis(kSides);
+  const std::array<double, 2> end = {300.0, 12.0}, near = {350.0, 12.0}, far = {500.0, 12.0};
+  EXPECT_FALSE(basis.is_beyond(end));
+  EXPECT_TRUE(basis.is_beyond(near));
+  EXPECT_TRUE(basis.held_row(near).isApprox(basis.row(end), 1e-14));
+  EXPECT_TRUE(basis.row(near).isApprox(0.5 * basis.row(end), 1e-14));
+  EXPECT_TRUE(basis.row(far).isZero(0.0));
+  EXPECT_TRUE(basis.held_row(far).isApprox(basis.row(end), 1e-14));
+}
+
+/// Over equally spaced samples, four per piece: the mean of (i / n)^2 for i = 0 to n is (2 n + 1) / (6 n),
+/// with n = 16 along the first variable and 12 along the second.
+TEST(TensorBasis, RootMeanSquareIsThatOfItsSamples) {
+  const TensorBasis basis(kSides);
+  const auto product = [&](bool first, bool second) {
+    const Eigen::VectorXd u = basis.nodes(0), v = basis.nodes(1);
+    Eigen::VectorXd coefficients(basis.size());
+    for (Eigen::Index i = 0; i < u.size(); ++i) {
+      for (Eigen::Index j = 0; j < v.size(); ++j)
+        coefficients[i * v.size() + j] = (first ? u[i] : 1.0) * (second ? v[j] : 1.0);
+    }
+    return basis.root_mean_square(coefficients);
+  };
+  const double of_first = std::sqrt(33.0 / 96.0), of_second = std::sqrt(25.0 / 72.0);
+  EXPECT_NEAR(product(false, false), 1.0, 1e-14);
+  EXPECT_NEAR(product(true, false), of_first, 1e-14);
+  EXPECT_NEAR(product(false, true), of_second, 1e-14);
+  EXPECT_NEAR(product(true, true), of_first * of_second, 1e-14);
+}
+
 TEST(TensorBasis, HoldsProductsOfCubicsAndNoFourthPower) {
   const TensorBasis basis(kSides);
   const auto places = inner_places();

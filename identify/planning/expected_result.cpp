@@ -70,8 +70,9 @@ class Expectation {
 
   void find_prior(const FunctionRoughnessGuess& roughness) {
     base_prior_ = stated_priors(model_, datum_);
-    const GaussianPrior wide = wide_prior(model_, datum_, z_, sigma_);
-    rank_ = analyse_rank(model_, datum_, information_ + base_prior_.precision, wide);
+    const Eigen::MatrixXd data = information_ + base_prior_.precision;
+    const GaussianPrior wide = above_rounding(data, wide_prior(model_, datum_, z_, sigma_));
+    rank_ = analyse_rank(model_, datum_, data, wide);
     hold_undetermined(rank_, wide, base_prior_);
     terms_ = assumed_smoothing(model_, datum_, roughness);
     hold_invisible(rank_, terms_, base_prior_);

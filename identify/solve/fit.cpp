@@ -183,8 +183,9 @@ class Identification {
     const NormalEquations& sums = accumulator.accumulate(parameters_);
     result_.initial_cost = sums.cost;
     base_prior_ = stated_priors(model_, *datum_);
-    const GaussianPrior wide = wide_prior(model_, *datum_, z_, stated_sigma_);
-    rank_ = analyse_rank(model_, *datum_, datum_->reduce_matrix(sums.matrix) + base_prior_.precision, wide);
+    const Eigen::MatrixXd data = datum_->reduce_matrix(sums.matrix) + base_prior_.precision;
+    const GaussianPrior wide = above_rounding(data, wide_prior(model_, *datum_, z_, stated_sigma_));
+    rank_ = analyse_rank(model_, *datum_, data, wide);
     hold_undetermined(rank_, wide, base_prior_);
     terms_ = smoothing_terms(model_, *datum_);
     hold_invisible(rank_, terms_, base_prior_);
@@ -432,7 +433,7 @@ class Identification {
     if (options_.noise == NoisePolicy::Automatic && options_.loss != RobustLoss::None) {
       result_.findings.push_back({FindingCode::NoiseTakenAsIndependent});
     }
-    judge(campaign_, model_.binding(), {converged_, rank_.deficient}, result_);
+    judge(model_, {converged_, rank_.deficient}, result_);
   }
 
   void summarise_variance_components() {

@@ -30,6 +30,12 @@ namespace volcal {
 GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& z,
                          const std::vector<double>& sigma);
 
+/// The wide prior where `data`, the normal matrix of the readings, leaves a factor above rounding beside it.
+/// Where two parameters are one to every reading, as the place of a sphere and the zero of the sensors along
+/// the axis that it turns about, a prior of a metre drowns in the rounding of precise readings: then every
+/// parameter is held to 1e-12 of its own information or more, mm where the prior was a metre.
+GaussianPrior above_rounding(const Eigen::MatrixXd& data, GaussianPrior wide);
+
 /// Priors that the files, or an instrument's weak default, give to the blocks' parameters, and the
 /// conventions of rotary axes (rotary_gauge.h); none elsewhere.
 GaussianPrior stated_priors(const MeasurementModel& model, const DatumSpace& datum);

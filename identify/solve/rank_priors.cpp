@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/priors/basis_prior.h"
 #include "volcal/identify/solve/priors/rotary_gauge.h"
 #include "volcal/identify/solve/rank.h"
@@ -16,7 +17,9 @@ constexpr double kWideRotation = 1e-3;
 constexpr double kWideSquareness = 1e-3;
 constexpr double kNoiseOfMachineTools = 2e-6;  // m or rad: what these widths are wide beside
 constexpr double kWideNuisance = 1.0;
-constexpr double kHeldSurface = 1e-9;  // what a surface could hide of the errors belongs to them
+constexpr double kSmallestPivot = 1e-13;    // beside its diagonal
+constexpr double kHeldInformation = 1e-12;  // of a parameter's own
+constexpr double kHeldSurface = 1e-9;       // what a surface could hide of the errors belongs to them
 
 /// Standard deviations of the wide prior.
 class WideSigma {
@@ -61,7 +64,8 @@ GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum,
     const Basis& basis =
         *model.layout().groups[static_cast<std::size_t>(model.layout().find(function.symbol)->group)].basis;
     const Eigen::MatrixXd roughness =
-        wide_precision(basis, model.campaign().machine.axis(function.symbol.axis));
+        wide_precision(basis, model.campaign().machine.axis(function.symbol.axis),
+                       is_smoothed(model.spec().function(function.symbol), basis));
     prior.precision.block(function.offset, function.offset, function.size(), function.size()) =
         function.basis.transpose() * roughness * function.basis / std::pow(wide_sigma.of(function.symbol), 2);
     prior.mean.segment(function.offset, function.size()).setZero();
@@ -75,6 +79,15 @@ GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum,
       prior.mean.segment(block.offset, block.size).setZero();
   }
   return prior;
+}
+
+GaussianPrior above_rounding(const Eigen::MatrixXd& data, GaussianPrior wide) {
+  const Eigen::MatrixXd total = data + wide.precision;
+  const auto factor = cholesky_lower(total);
+  const auto pivots = [&] { return factor->diagonal().array().square() / total.diagonal().array(); };
+  if (factor && pivots().minCoeff() > kSmallestPivot) return wide;
+  wide.precision.diagonal() = wide.precision.diagonal().cwiseMax(kHeldInformation * data.diagonal());
+  return wide;
 }
 
 GaussianPrior stated_priors(const MeasurementModel& model, const DatumSpace& datum) {

@@ -25,6 +25,7 @@ constexpr double kSignificanceOfLackOfFit = 1e-3;
 constexpr double kUnitSlip = 100.0;
 constexpr double kContradicted = 5.0;       // standard deviations of a prior
 constexpr double kFarGuess = 0.1;           // m, of a station: cm accuracy is enough
+constexpr double kInPlane = 0.1;            // cosine of a line of sight to the normal
 constexpr double kSmallestLackOfFit = 1.1;  // sigma0 below this is not worth a warning
 constexpr double kSeveralTimes = 3.0;       // the stated sigma: hardly the instrument's noise
 
@@ -156,6 +157,34 @@ void report_far_guesses(FitResult& result) {
   }
 }
 
+/// Largest cosine, over all lines of sight, to a direction of the workpiece; negative without any.
+double most_along(const MeasurementModel& model, int direction, const Eigen::VectorXd& parameters) {
+  double most = -1.0;
+  MeasurementModel::DisturbanceRows rows;
+  for (std::size_t setup = 0; setup < model.campaign().setups.size(); ++setup) {
+    const Readings& readings = model.campaign().setups[setup].readings;
+    for (std::size_t row = 0; row < readings.size(); ++row) {
+      model.disturbance_rows(setup, row, parameters, rows);
+      for (std::size_t channel = 0; channel < readings.channels(); ++channel) {
+        const Eigen::Vector3d sight =
+            rows.block<1, 3>(static_cast<Eigen::Index>(channel), kStationDisturbance).transpose();
+        if (!sight.isZero()) most = std::max(most, std::abs(sight[direction]) / sight.norm());
+      }
+    }
+  }
+  return most;
+}
+
+void report_stations_in_plane(const MeasurementModel& model, FitResult& result) {
+  for (const AxisName axis : kLinearAxes) {
+    if (model.campaign().machine.has_axis(axis)) continue;
+    const double most = most_along(model, direction_of(axis), result.parameters);
+    if (most < 0.0 || most >= kInPlane) continue;
+    result.findings.push_back({FindingCode::StationsInPlane,
+                               {{"axis", std::string(1, letter_of(axis))}, {"share", FindingNumber{most}}}});
+  }
+}
+
 void report_unrecorded_drivers(const Campaign& campaign, const CampaignBinding& binding, FitResult& result) {
   for (const EffectBinding& effect : binding.effects) {
     std::size_t unrecorded = 0;
@@ -196,8 +225,8 @@ void report_lack_of_fit(FitResult& result) {
 
 }  // namespace
 
-void judge(const Campaign& campaign, const CampaignBinding& binding, const AdjustmentEnd& end,
-           FitResult& result) {
+void judge(const MeasurementModel& model, const AdjustmentEnd& end, FitResult& result) {
+  const Campaign& campaign = model.campaign();
   result.findings.insert(result.findings.end(), campaign.notes.begin(), campaign.notes.end());
   report_stated_sigma(result);
   report_noise(campaign, result);
@@ -209,7 +238,8 @@ void judge(const Campaign& campaign, const CampaignBinding& binding, const Adjus
   report_outliers(result);
   report_contradicted_priors(result);
   report_far_guesses(result);
-  report_unrecorded_drivers(campaign, binding, result);
+  report_stations_in_plane(model, result);
+  report_unrecorded_drivers(campaign, model.binding(), result);
   if (lack) report_lack_of_fit(result);
   if (!end.converged) result.findings.push_back({FindingCode::FitNotConverged});
   result.status = !end.converged       ? FitStatus::NotConverged

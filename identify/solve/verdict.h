@@ -2,7 +2,7 @@
 /// What is reported of a finished adjustment.
 
 #include "volcal/identify/result/result.h"
-#include "volcal/model/observation/campaign_binding.h"
+#include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
 
@@ -12,8 +12,8 @@ struct AdjustmentEnd {
 };
 
 /// Sets status and appends findings: stated sigma that is wrong, noise that is more than white, what is not
-/// visible, outliers, stated guesses that are contradicted, drivers that were not recorded, lack of fit.
-void judge(const Campaign& campaign, const CampaignBinding& binding, const AdjustmentEnd& end,
-           FitResult& result);
+/// visible, outliers, stated guesses that are contradicted, stations in the plane of a machine of two linear
+/// axes, drivers that were not recorded, lack of fit.
+void judge(const MeasurementModel& model, const AdjustmentEnd& end, FitResult& result);
 
 }  // namespace volcal

@@ -44,6 +44,16 @@ std::string station_far_from_guess(const Finding& finding) {
       finding.flag("guess_in_metres") ? " (is the guess in m?)" : "");
 }
 
+std::string stations_in_plane(const Finding& finding) {
+  const std::string& across = finding.text("axis");
+  return fmt::format(
+      "every station stands close to the plane in which the machine moves: a length changes by at most "
+      "{:.2g} "
+      "of a displacement along {}, and with its square; errors along {} and their U95 are not to be "
+      "trusted; place stations to both sides of that plane, half the travel away or more",
+      finding.number("share").si, across, across);
+}
+
 std::string driver_unrecorded(const Finding& finding) {
   return fmt::format("{}: {} readings do not record {} and carry nothing of the effect",
                      finding.text("effect"), finding.count("readings"), finding.text("driver"));
@@ -72,6 +82,7 @@ std::span<const SentenceMaker> fit_sentences() {
       {FindingCode::ReadingsRemoved, removed},
       {FindingCode::PriorContradicted, prior_contradicted},
       {FindingCode::StationFarFromGuess, station_far_from_guess},
+      {FindingCode::StationsInPlane, stations_in_plane},
       {FindingCode::EffectDriverUnrecorded, driver_unrecorded},
       {FindingCode::FitLackOfFit, lack_of_fit},
       {FindingCode::FitNotConverged, not_converged},

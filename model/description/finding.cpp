@@ -41,6 +41,7 @@ constexpr auto kFindingCodes = [] {
       {RankHeldByPrior, "rank.held-by-prior", Severity::Note},
       {PriorContradicted, "prior.contradicted", Severity::Warning},
       {StationFarFromGuess, "station.guess-contradicted", Severity::Warning},
+      {StationsInPlane, "station.in-plane", Severity::Warning},
       {EffectDriverUnrecorded, "effect.driver-unrecorded", Severity::Warning},
       {FitLackOfFit, "fit.lack-of-fit", Severity::Failure},
       {FitNotConverged, "fit.not-converged", Severity::Failure},

@@ -37,6 +37,7 @@ enum class FindingCode : std::uint8_t {
   RankHeldByPrior,
   PriorContradicted,
   StationFarFromGuess,
+  StationsInPlane,
   EffectDriverUnrecorded,
   FitLackOfFit,
   FitNotConverged,

@@ -8,15 +8,29 @@
 namespace volcal::sim {
 namespace {
 
-/// Around the volume, below its middle, at unequal distances (shares of the travel beyond its ends).
+double longest_linear_travel(const Machine& machine) {
+  double longest = 0.0;
+  for (const Axis& axis : machine.axes) {
+    if (!is_rotary(axis.name)) longest = std::max(longest, axis.travel());
+  }
+  return longest;
+}
+
+/// Around the volume, below its middle, at unequal distances (shares of the travel beyond its ends). Where a
+/// linear axis is missing, to both sides of the plane or line in which the others move: lengths from stations
+/// in it change with displacements out of it by their squares alone.
 std::vector<Tracking::Station> standard_stations(const Machine& machine) {
   const std::vector<Eigen::Vector3d> shares = {
       {-0.25, -0.2, -0.13}, {1.25, -0.3, -0.3}, {1.2, 1.3, -0.25}, {-0.2, 1.25, -0.45}};
   std::vector<Tracking::Station> stations;
   for (const Eigen::Vector3d& share : shares) {
     const CommandedPoint point = at_fraction(machine, share);
-    stations.push_back({"P" + std::to_string(stations.size() + 1),
-                        {point.position[0], point.position[1], point.position[2]}});
+    Eigen::Vector3d station_w(point.position[0], point.position[1], point.position[2]);
+    for (const AxisName axis : kLinearAxes) {
+      const int d = direction_of(axis);
+      if (!machine.has_axis(axis)) station_w[d] = (share[d] - 0.5) * longest_linear_travel(machine);
+    }
+    stations.push_back({"P" + std::to_string(stations.size() + 1), station_w});
   }
   return stations;
 }

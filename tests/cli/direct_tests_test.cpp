@@ -16,6 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 using testing::content;
+using ::testing::HasSubstr;
 using testing::run_program;
 
 /// Of the tests in `list` that whose `key` is `name`.
@@ -82,6 +83,9 @@ noise = { constant_um = 0.002, repeatability_um = 0.0 }
   EXPECT_NEAR(motion("axial Z", "fundamental_um"), 4.0, 0.05);
   EXPECT_NEAR(motion("tilt about X", "total_urad"), 20.0, 0.5);
   EXPECT_NEAR(motion("tilt about Y", "total_urad"), 0.0, 0.5);
+  const auto fitted = run_program("fit " + in("campaign/campaign.toml") + " --json -o " + in("result"));
+  ASSERT_LT(fitted.exit_code, 2) << fitted.errors << "sphere and zero are one along the axis of C";
+  EXPECT_THAT(fitted.output, HasSubstr("\"rank_deficient\""));
 }
 
 /// The channel rises by 1 K in an hour, for four: growth of the spindle and its tilt are what the sealed

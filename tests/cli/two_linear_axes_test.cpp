@@ -92,6 +92,36 @@ TEST_F(Lathe, IsIdentified) {
   EXPECT_LT(after, 0.05 * before);
 }
 
+/// Rehearsed as written, every error but a positioning error between its places is visible, and readings that
+/// turn the spindle, of which the fit knows nothing, fall into their intervals: 72 to 98 % of them in ten
+/// rehearsals, 91 % in the mean, as the errors of one campaign are common to all its predictions.
+TEST_F(Lathe, IsPredictedWhereItsSpindleTurns) {
+  EXPECT_THAT(fitted_.output, HasSubstr("23 of 23 errors identified"));
+  const auto validated =
+      run_program("validate " + in("result") + " " + in("campaign/truth/campaign.toml") + " --json");
+  ASSERT_EQ(validated.exit_code, 0) << validated.errors;
+  const Json figures = Json::parse(validated.output);
+  EXPECT_LT(figures.at("rms_after_um").get<double>(), 0.2 * figures.at("rms_before_um").get<double>());
+  EXPECT_GT(figures.at("coverage95").get<double>(), 0.7);
+}
+
+/// Stations in the plane of X and Z: lengths tell nothing of Y but its square, which is said.
+TEST_F(Lathe, IsNotMeasuredFromItsOwnPlane) {
+  const std::filesystem::path study = scratch_->path() / "lathe/in-plane.toml";
+  std::ofstream(study) << "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = 1\n"
+                       << "[truth]\nvolumetric_rms_um = [4.0, 6.0]\n"
+                       << "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [6, 5, 4]\n"
+                       << "stations = [{ name = \"P1\", position_mm = [-450, 5, -565] }, "
+                       << "{ name = \"P2\", position_mm = [450, -5, -650] }]\n"
+                       << "runs = [{ station = \"P1\", tool = \"short\" }, "
+                       << "{ station = \"P2\", tool = \"long\" }]\n";
+  const auto simulated = run_program("simulate " + study.string() + " -o " + in("in-plane"));
+  ASSERT_EQ(simulated.exit_code, 0) << simulated.errors;
+  const auto of_plane = run_program("fit " + in("in-plane/campaign.toml") + " --json -o " + in("of-plane"));
+  EXPECT_THAT(of_plane.output, HasSubstr("station.in-plane"));
+  EXPECT_THAT(content(scratch_->path() / "result/result.json"), Not(HasSubstr("station.in-plane")));
+}
+
 TEST_F(Lathe, GetsTables) {
   const auto tables = run_program("tables " + in("result") + " --format csv -o " + in("tables"));
   ASSERT_LT(tables.exit_code, 2) << tables.errors;

@@ -214,8 +214,21 @@ std::string rotation_measurement(const Structure& structure, AxisName axis) {
       "{}\n"
       "points = 36\n",
       letter_of(axis),
-      moves_along ? "tools = [\"short\"]\nheights_mm = [0.0, 100.0]  # from centre_mm along the line"
-                  : "tools = [\"short\", \"long\"]");
+      moves_along
+          ? "tools = [\"short\", \"long\"]\nheights_mm = [0.0, 100.0]  # from centre_mm along the line"
+          : "tools = [\"short\", \"long\"]");
+}
+
+/// Where a linear axis is missing: lengths to points of a plane leave its shape open, angles and a square of
+/// the two others do not.
+std::string plane_measurements(const Structure& structure) {
+  if (missing_linear_axes(structure).empty()) return "";
+  return "\n[[measurements]]  # angles of the linear axes\n"
+         "kind = \"angle-lines\"\n"
+         "points = 11\n"
+         "\n[[measurements]]  # their squareness and straightness: lengths in one plane leave both open\n"
+         "kind = \"squares\"\n"
+         "points = 11\n";
 }
 
 /// Measurements of the rotary axes for a study file.
@@ -320,7 +333,7 @@ std::string rotary_study(const Structure& structure) {
              "grid = [6, 5, 4]{}\n",
              sim::kLaserTracer,
              missing_linear_axes(structure).empty() ? "" : "  # one position of an axis that is not there") +
-         rotary_measurements(structure);
+         plane_measurements(structure) + rotary_measurements(structure);
 }
 
 }  // namespace volcal::cli

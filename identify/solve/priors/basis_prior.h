@@ -15,7 +15,9 @@ namespace volcal {
 bool is_smoothed(const FunctionSpec& spec, const Basis& basis);
 
 /// Precision of the coefficients of a function whose standard deviation over the travel is 1, and which is
-/// smooth where its basis has a roughness: the wide prior (rank.h) of what the readings do not determine.
-Eigen::MatrixXd wide_precision(const Basis& basis, const Axis& axis);
+/// smooth where its basis has a roughness or, of a Fourier series, `smoothed` says so: the wide prior
+/// (rank.h) of what the readings do not determine. A harmonic that the program chose beyond those that its
+/// readings tell apart is then resolution, as a knot is, and hides no error.
+Eigen::MatrixXd wide_precision(const Basis& basis, const Axis& axis, bool smoothed);
 
 }  // namespace volcal

@@ -278,6 +278,11 @@ const std::vector<WordedFinding>& examples() {
          {"guess_in_metres", true}}},
        "station P1: found 538 mm from its guess; write [100, -650, 20] mm in the campaign file (is the guess "
        "in m?)"},
+      {{FindingCode::StationsInPlane, {{"axis", "Y"}, {"share", FindingNumber{0.0213}}}},
+       "every station stands close to the plane in which the machine moves: a length changes by at most "
+       "0.021 "
+       "of a displacement along Y, and with its square; errors along Y and their U95 are not to be trusted; "
+       "place stations to both sides of that plane, half the travel away or more"},
       {{FindingCode::EffectDriverUnrecorded,
         {{"effect", "EXX by T_air"}, {"readings", std::int64_t{12}}, {"driver", "T_air"}}},
        "EXX by T_air: 12 readings do not record T_air and carry nothing of the effect"},

@@ -250,22 +250,30 @@ std::optional<PoseErrorRows> ErrorField::faded_rows(const AxisPosition& position
   return rows;
 }
 
+std::vector<FadedError> ErrorField::faded_errors(const AxisPosition& position,
+                                                 const ApproachDirection& direction) const {
+  const std::vector<FadedSurface> faded = effects_.faded_surfaces(measured_.held(position), direction);
+  if (faded.empty()) return {};
+  JointLever levers[kAxisCount];
+  chain_.levers(position, tool_.offset, levers);
+  std::vector<FadedError> errors;
+  for (const FadedSurface& each : faded) {
+    FadedError error{std::ranges::find(effects_.columns(), each.effect, &EffectColumn::effect)->parameter,
+                     each.u};
+    if (each.target.kind == TargetKind::ToolOffset)
+      error.u.head<3>() = each.u * chain_.nominal_rotation_wt(position).col(each.target.component);
+    if (each.target.kind == TargetKind::Motion)
+      error.u = each.u * motion_column(joint_lever(levers, chain_.joint_count(), each.target.symbol.axis),
+                                       each.target.symbol.component);
+    errors.push_back(error);
+  }
+  return errors;
+}
+
 PoseErrorVector ErrorField::faded_variance(const AxisPosition& position,
                                            const ApproachDirection& direction) const {
   PoseErrorVector variance = PoseErrorVector::Zero();
-  const std::vector<FadedSurface> faded = effects_.faded_surfaces(measured_.held(position), direction);
-  if (faded.empty()) return variance;
-  JointLever levers[kAxisCount];
-  chain_.levers(position, tool_.offset, levers);
-  for (const FadedSurface& each : faded) {
-    PoseErrorVector error = PoseErrorVector::Zero();
-    if (each.target.kind == TargetKind::ToolOffset)
-      error.head<3>() = each.u * chain_.nominal_rotation_wt(position).col(each.target.component);
-    if (each.target.kind == TargetKind::Motion)
-      error = each.u * motion_column(joint_lever(levers, chain_.joint_count(), each.target.symbol.axis),
-                                     each.target.symbol.component);
-    variance += error.cwiseAbs2();
-  }
+  for (const FadedError& error : faded_errors(position, direction)) variance += error.u.cwiseAbs2();
   return variance;
 }
 

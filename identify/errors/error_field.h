@@ -54,6 +54,13 @@ struct Contribution {
   std::optional<AxisName> axis;  ///< of an expansion
 };
 
+/// Standard uncertainty that a curve or surface leaves where it has faded out.
+struct FadedError {
+  int parameter = 0;  ///< the first of its coefficients, in the result's parameters
+  double size = 0.0;  ///< of its target, m or rad
+  PoseErrorVector u = PoseErrorVector::Zero();
+};
+
 class ErrorField {
  public:
   ErrorField(const FitResult& result, const Tool& tool, const Conditions& conditions);
@@ -76,7 +83,10 @@ class ErrorField {
   /// of the error with their last value held, less rows(). Absent where none is beyond.
   std::optional<PoseErrorRows> faded_rows(const AxisPosition& position,
                                           const ApproachDirection& direction = {}) const;
-  /// Variances that what has faded out may still have.
+  /// Every curve and surface that has faded out there, as large as it may still be.
+  std::vector<FadedError> faded_errors(const AxisPosition& position,
+                                       const ApproachDirection& direction = {}) const;
+  /// The sum of their squares: variances that what has faded out may still have.
   PoseErrorVector faded_variance(const AxisPosition& position, const ApproachDirection& direction = {}) const;
   /// Beyond the measured positions of an axis, or the readings of a curve or surface, at that pose and the
   /// stated conditions.

@@ -13,10 +13,11 @@ namespace {
 
 constexpr Eigen::Index kMostNumbersAtOnce = Eigen::Index{1} << 25;  // 256 MiB of products of several parts
 
-/// Parts whose products, so many numbers each, wait to be added up.
-std::size_t parts_at_once(Eigen::Index numbers) {
-  return static_cast<std::size_t>(
-      std::max<Eigen::Index>(kMostNumbersAtOnce / std::max<Eigen::Index>(numbers, 1), 1));
+/// Of so many parts those whose products, so many numbers each, wait to be added up.
+std::size_t parts_at_once(Eigen::Index numbers, std::size_t parts) {
+  const Eigen::Index most =
+      std::max<Eigen::Index>(kMostNumbersAtOnce / std::max<Eigen::Index>(numbers, 1), 1);
+  return std::clamp<std::size_t>(parts, 1, static_cast<std::size_t>(most));
 }
 
 }  // namespace
@@ -110,7 +111,7 @@ Projector::PartRows Projector::others_of(const PartRows& part) const {
 void Projector::whiten_model(const Eigen::VectorXd& residual) {
   const Eigen::Index width = base_parameters_ + 1;
   std::vector<PartRows> others(part_count());
-  std::vector<Eigen::MatrixXd> residuals(part_count()), products(parts_at_once(width * width));
+  std::vector<Eigen::MatrixXd> residuals(part_count()), products(parts_at_once(width * width, part_count()));
   gram_.setZero(width, width);
   for (std::size_t begin = 0; begin < part_count(); begin += products.size()) {
     const std::size_t count = std::min(products.size(), part_count() - begin);
@@ -309,7 +310,7 @@ Eigen::MatrixXd Projector::products_of(const Eigen::MatrixXd& columns,
                                        const std::function<void(std::size_t, Eigen::MatrixXd)>& visit) const {
   const Eigen::Index height = parameters() + 1;
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(height, columns.cols());
-  std::vector<Eigen::MatrixXd> products(parts_at_once(height * columns.cols()));
+  std::vector<Eigen::MatrixXd> products(parts_at_once(height * columns.cols(), part_count()));
   for (std::size_t begin = 0; begin < part_count(); begin += products.size()) {
     const std::size_t count = std::min(products.size(), part_count() - begin);
     run_parallel(count, threads_, [&](std::size_t i) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "volcal/identify/errors/error_grid.h"
+#include "volcal/identify/errors/volume/faded_in_volume.h"
 #include "volcal/identify/errors/volume/volume_moments.h"
 #include "volcal/identify/errors/volume/volumetric.h"
 #include "volcal/identify/numeric/dense.h"
@@ -143,7 +144,8 @@ class VolumeOfParts {
   double u_rms(const std::vector<int>& parameters) const {
     if (!is_uncertain_ || parameters.empty()) return 0.0;
     const Eigen::MatrixXd covariance = result_.covariance(parameters, parameters);
-    return std::sqrt(std::max(0.0, covariance.cwiseProduct(moments_(parameters, parameters)).sum()));
+    const double known = covariance.cwiseProduct(moments_(parameters, parameters)).sum();
+    return std::sqrt(std::max(0.0, known + faded_.mean_square(parameters)));
   }
   /// Of the mean square, by independent standard normal variables squared.
   Eigen::VectorXd weights(const std::vector<int>& parameters) const {
@@ -178,7 +180,9 @@ class VolumeOfParts {
         displacement += rows.col(parameter) * result_.parameters[parameter];
       fields_[p].push_back(displacement);
     }
-    if (is_uncertain_) moments.add(points_.back(), field_.unheld_rows(position, direction).topRows<3>());
+    if (!is_uncertain_) return;
+    moments.add(points_.back(), field_.unheld_rows(position, direction).topRows<3>());
+    faded_.add(points_.back(), field_.faded_errors(position, direction));
   }
 
   const FitResult& result_;
@@ -191,6 +195,7 @@ class VolumeOfParts {
   Field points_;
   std::vector<Field> fields_;
   Eigen::MatrixXd moments_;
+  FadedInVolume faded_;
 };
 
 void add_to(Field& sum, const Field& part) {

@@ -6,7 +6,8 @@
 ///
 /// Shares are <e_c, e> / <e, e> over the volume, e the whole error: they sum to 1, and a contribution that
 /// cancels part of the others has a negative one. Uncertainties are of the same displacements, correlations
-/// of the parameters included: u^2 = trace(C M) (volume_moments.h). Expected shares are (<e_c, e> + u_c^2) /
+/// of the parameters included: u^2 = trace(C M) (volume_moments.h), and of curves and surfaces what has faded
+/// out at the stated conditions (faded_in_volume.h). Expected shares are (<e_c, e> + u_c^2) /
 /// (<e, e> + u^2); they sum to 1 where the contributions are uncorrelated, as at the design stage.
 
 #include <cmath>

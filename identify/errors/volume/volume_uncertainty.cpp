@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "volcal/identify/errors/volume/faded_in_volume.h"
 #include "volcal/identify/errors/volume/volume_moments.h"
 
 namespace volcal {
@@ -29,11 +30,14 @@ double volume_uncertainty(const FitResult& result, const Tool& tool, const Condi
   const ErrorField field(result, tool, conditions);
   const Eigen::Vector3d movable = movable_of(result.machine);
   VolumeMoments moments(result.layout.size);
+  FadedInVolume faded;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    moments.add({positions[i][0], positions[i][1], positions[i][2]},
-                movable.asDiagonal() * field.unheld_rows(positions[i], directions[i]).topRows<3>());
+    const Eigen::Vector3d place(positions[i][0], positions[i][1], positions[i][2]);
+    moments.add(place, movable.asDiagonal() * field.unheld_rows(positions[i], directions[i]).topRows<3>());
+    faded.add(place, field.faded_errors(positions[i], directions[i]), movable);
   }
-  return std::sqrt(std::max(0.0, moments.mean().cwiseProduct(result.covariance).sum()));
+  const double known = moments.mean().cwiseProduct(result.covariance).sum();
+  return std::sqrt(std::max(0.0, known + faded.mean_square()));
 }
 
 }  // namespace volcal

@@ -11,6 +11,8 @@
 #include "volcal/identify/errors/acting_conditions.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/stated_errors.h"
+#include "volcal/identify/errors/volume/error_budget.h"
+#include "volcal/identify/errors/volume/faded_in_volume.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/functions/tensor_basis.h"
@@ -102,6 +104,58 @@ TEST_F(BeyondConditions, GridsAndTablesSayTheSame) {
     EXPECT_NEAR(row.u, std::sqrt(50.0) * 1e-6, 1e-15);
   }
   EXPECT_GT(rows, 10);
+}
+
+/// A shift of the whole volume is taken up by the workpiece's frame, before its curve has faded out and
+/// after.
+TEST_F(BeyondConditions, AShiftLeavesNothingInTheVolume) {
+  const ErrorBudget budget = error_budget(result_, result_.machine.tools.front(), conditions(40.0), 3);
+  EXPECT_NEAR(budget.total.u_rms, 0.0, 1e-12);
+}
+
+/// 7 urad of EBY, gone at 40 degC, turn what Y carries; what they may still be, beside the u of the last
+/// coefficient, is sqrt(7^2 + 1) times what 1 urad leaves after a rigid motion.
+TEST(FadedInVolume, IsAsACovarianceOfItsSize) {
+  const auto made = [](const std::string& target, double coefficient, double u) {
+    ModelSpec model;
+    model.default_function.basis = "zero";
+    model.effects = {effect_spec("empirical", {{"target", target},
+                                               {"drivers", std::string("T_spindle")},
+                                               {"from", std::vector<double>{18.0}},
+                                               {"to", std::vector<double>{26.0}},
+                                               {"pieces", std::vector<double>{2.0}},
+                                               {"coefficients", std::vector<double>(5, coefficient)}})};
+    model.conditions.temperature_degC["spindle"] = {18.0, 21.0, 26.0};
+    FitResult result = stated_result(testing_support::effect_campaign().machine, model);
+    result.covariance.diagonal().setConstant(u * u);
+    return result;
+  };
+  const auto u_of = [](const FitResult& result, double temperature_degC) {
+    Conditions conditions;
+    conditions.temperature_degC["spindle"] = temperature_degC;
+    return error_budget(result, result.machine.tools.front(), conditions, 3).total.u_rms;
+  };
+  const FitResult faded = made("EBY", 7e-6, 1e-6);
+  const double inside = u_of(faded, 26.0);  // the last spline alone: 1 urad
+  ASSERT_GT(inside, 1e-8);
+  EXPECT_NEAR(u_of(faded, 40.0), std::sqrt(50.0) * inside, 1e-6 * inside);
+}
+
+/// Of a surface that depends on a position the shift counts too: of 2 um at one of two points and 0 at the
+/// other 2 um^2 are the mean square, of 2 um at both nothing is left.
+TEST(FadedInVolume, CountsWhatChangesFromPointToPointAsItIs) {
+  FadedError two{4, 2e-6}, none{4, 0.0};
+  two.u[0] = 2e-6;
+  FadedInVolume changes, same;
+  changes.add({0.0, 0.0, 0.0}, {&two, 1});
+  changes.add({1.0, 0.0, 0.0}, {&none, 1});
+  EXPECT_NEAR(changes.mean_square(), 2e-12, 1e-20);
+  const int other = 5, own = 4;
+  EXPECT_EQ(changes.mean_square({&other, 1}), 0.0);
+  EXPECT_NEAR(changes.mean_square({&own, 1}), 2e-12, 1e-20);
+  same.add({0.0, 0.0, 0.0}, {&two, 1});
+  same.add({1.0, 0.0, 0.0}, {&two, 1});
+  EXPECT_NEAR(same.mean_square(), 0.0, 1e-20);
 }
 
 TEST_F(BeyondConditions, TheErrorDependsOnTheTemperatureThatHidesIt) {

@@ -10,6 +10,7 @@
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/design_stage.h"
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/identify/io/campaign/tolerance_reader.h"
@@ -40,8 +41,12 @@ struct BudgetOf {
         tolerances ? design_budget_json(budget, of.machine, *tolerances) : error_budget_json(budget);
     json["tool"] = tool;
     json["conditions"] = conditions_json(of, conditions);
-    if (!tolerances) add_findings("invisible", of.rank.invisible, json);
-    if (!tolerances) add_findings("contradicted", contradictions(of), json);
+    if (!tolerances) {
+      add_findings("effects_in_no_figure", effects_in_no_figure(of), json);
+      add_findings("of_tables", findings_of_tables(of, {tool}), json);
+      add_findings("invisible", of.rank.invisible, json);
+      add_findings("contradicted", contradictions(of), json);
+    }
     return json;
   }
   std::string text() const {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "volcal/identify/compensation/made_tables.h"
+#include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/io/campaign/record_reader.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/compensation_text.h"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/finding.h"
 #include "volcal/model/description/model_spec.h"
 #include "volcal/sim/hidden/hidden_answer.h"
 #include "volcal/sim/hidden/hidden_effects.h"
@@ -25,6 +26,7 @@ struct TruthSettings {
   bool perfect = false;             ///< no errors but those listed below
   std::optional<ModelSpec> errors;  ///< known ones in place of random ones (known_errors.h)
   std::string errors_file;          ///< where they were read from
+  std::vector<Finding> notes;       ///< on what was read
   RandomTruthOptions random;
   std::map<ErrorSymbol, FunctionSpec> functions;   ///< with coefficients, in place of the random ones
   std::map<LocationSymbol, double> locations;      ///< in place of the random ones, rad or m

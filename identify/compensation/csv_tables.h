@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "volcal/identify/compensation/table_format.h"
+#include "volcal/identify/errors/errors_of_tables.h"
 
 namespace volcal {
 
@@ -46,6 +47,8 @@ struct TableMetadata {
   std::string tool;
   CompensationType type;                       ///< L-VOL in files that do not say
   std::map<std::string, std::string> entries;  ///< every key
+  TablesMadeFor made_for;                      ///< of error tables; empty in files that do not say
+  RecordedConditions conditions;               ///< those of `made_for`
 };
 TableMetadata read_table_metadata(const TableFile& file);
 

@@ -67,6 +67,9 @@ class FiveAxisCompensation {
     Eigen::Vector3d displacement_w = Eigen::Vector3d::Zero();
     double axis = 0.0;
   };
+  Eigen::Vector3d nominal_point_w(const AxisPosition& position) const {
+    return chain_.nominal_point_w(position, settings_.tool_offset);
+  }
   Left left_by(const Correction& correction, const AxisPosition& position,
                const ApproachDirection& direction = {}) const;
 

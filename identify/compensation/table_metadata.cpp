@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::string_view kMetadataFormat = "volcal-tables-1";
 constexpr std::string_view kNotRecorded = "not recorded";
+constexpr std::string_view kEffectConditions = "effects.conditions";
+constexpr std::string_view kNone = "none", kBetween = "; ";
 constexpr std::array<char, 3> kCoordinates = {'x', 'y', 'z'};
 
 class MetadataWriter {
@@ -73,6 +75,33 @@ void add_rotary_types(MetadataWriter& out, const FitResult& result, const TableF
   if (no_grid.empty()) out.add_number("rotary.grid_step_at_most_deg", grid_step(options) / kRadianPerDegree);
 }
 
+std::string listed(const std::vector<std::string>& texts) {
+  std::string list;
+  for (const std::string& text : texts) list += (list.empty() ? "" : std::string(kBetween)) + text;
+  return list.empty() ? std::string(kNone) : list;
+}
+
+std::vector<std::string> texts_of_list(const std::string& list) {
+  std::vector<std::string> texts;
+  if (list == kNone) return texts;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(kBetween, begin), list.size());
+    texts.push_back(list.substr(begin, end - begin));
+    begin = end + kBetween.size();
+  }
+  return texts;
+}
+
+/// What the error tables hold of effects, and what they hold it for.
+void add_effects(MetadataWriter& out, const TablesMadeFor& made_for) {
+  std::vector<std::string> conditions;
+  for (const Variable& variable : made_for.conditions) conditions.push_back(variable.column());
+  out.add(kEffectConditions, listed(conditions));
+  out.add("effects.tool", made_for.tool.empty() ? kNone : std::string_view(made_for.tool));
+  out.add("effects.as_nearest_rigid_body", listed(made_for.shared_effects));
+  out.add("effects.in_no_table", listed(made_for.left_out));
+}
+
 void add_run(MetadataWriter& out, const FitResult& result, const TableFormatOptions& options) {
   out.add("alignment", result.alignment.empty() ? "as identified" : result.alignment);
   std::size_t readings = 0;
@@ -93,14 +122,15 @@ void add_run(MetadataWriter& out, const FitResult& result, const TableFormatOpti
   out.add("identification.readings", std::to_string(readings));
   out.add("identification.setups", setups);
   out.add_number("coverage_factor", result.coverage_factor);
-  const Conditions conditions = conditions_of(result, options);
+  const bool of_tables = !findings_of_tables(result).empty();
+  const Conditions conditions = of_tables ? default_conditions(result) : conditions_of(result, options);
   out.add_number("reference_temperature_degC", stated_reference_temperature(result, conditions));
-  out.add("reference_temperature_is",
-          result.temperature_is_campaign_mean ? "mean of the campaign" : "reduced by scale expansions");
+  out.add("reference_temperature_is", reference_temperature_origin(result));
   for (const StatedCondition& condition : list_conditions(result, conditions)) {
     out.add_number("conditions." + condition.name(), condition.value);
     out.add("conditions." + condition.name() + ".is", condition.origin);
   }
+  add_effects(out, tables_made_for(result, tool_of(result.machine, options), conditions));
 }
 
 class MetadataReader {
@@ -121,6 +151,7 @@ class MetadataReader {
     if (!metadata.machine.tool_index(metadata.tool)) fail("tool", "name one of the tools listed below it");
     metadata.type = compensation_type();
     for (const auto& [key, row] : rows_) metadata.entries[key] = row.cells[1];
+    if (metadata.entries.contains(std::string(kEffectConditions))) read_effects(metadata);
     return metadata;
   }
 
@@ -135,6 +166,30 @@ class MetadataReader {
   double number(const std::string& key) const { return csv_number(row(key), 1, key); }
   [[noreturn]] void fail(const std::string& key, const std::string& remedy) const {
     throw InputError(row(key).place, key + " is \"" + text(key).substr(0, 40) + "\"", remedy);
+  }
+
+  void read_effects(TableMetadata& metadata) const {
+    TablesMadeFor& made_for = metadata.made_for;
+    if (const std::string& tool = text("effects.tool"); tool != kNone) {
+      if (!metadata.machine.tool_index(tool)) fail("effects.tool", "name one of the tools of the file");
+      made_for.tool = tool;
+    }
+    made_for.shared_effects = texts_of_list(text("effects.as_nearest_rigid_body"));
+    made_for.left_out = texts_of_list(text("effects.in_no_table"));
+    for (const std::string& column : texts_of_list(text(std::string(kEffectConditions)))) {
+      const auto variable = Variable::parse_column(column);
+      const bool is_condition = variable && variable->changes_at_rest();
+      if (!is_condition) fail(std::string(kEffectConditions), "name temperatures, time_s or feed_mm_min");
+      made_for.conditions.push_back(*variable);
+      const double value = number("conditions." + column) * variable->unit().si_per_unit;
+      const RecordedRange range{value, value, value, ConditionOrigin::Tables};
+      if (variable->kind == Variable::Kind::Temperature) {
+        metadata.conditions.temperature_degC[variable->subject] = range;
+      } else {
+        (variable->kind == Variable::Kind::Time ? metadata.conditions.time : metadata.conditions.feed) =
+            range;
+      }
+    }
   }
 
   CompensationType compensation_type() const {

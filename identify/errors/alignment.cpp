@@ -86,9 +86,12 @@ class Realignment {
     const Eigen::Index size = old_.parameters.size();
     result.parameters = jacobian * extended();
     const Eigen::MatrixXd inner = jacobian.leftCols(size);
-    result.covariance = inner * old_.covariance * inner.transpose();
+    const bool is_stated = old_.covariance.size() == 0;
+    if (!is_stated) result.covariance = inner * old_.covariance * inner.transpose();
     aligned.frame_rotation = phi_ * extended();
-    aligned.frame_covariance = phi_.leftCols(size) * old_.covariance * phi_.leftCols(size).transpose();
+    aligned.frame_covariance.setZero(phi_.rows(), phi_.rows());
+    if (!is_stated)
+      aligned.frame_covariance = phi_.leftCols(size) * old_.covariance * phi_.leftCols(size).transpose();
     turn_tools();
     result.machine = machine_;
     result.adjustment = nullptr;

@@ -27,6 +27,12 @@ void check_datum(const Machine& machine, const Datum& datum) {
 }
 
 void check_origin(const Machine& machine, const AxisPosition& origin) {
+  for (const Axis& axis : machine.axes) {
+    if (is_rotary(axis.name) && std::abs(origin[index_of(axis.name)] - axis.home) > kSameOrigin)
+      throw InputError(
+          {}, std::string("an origin has linear axes only, and this one names ") + letter_of(axis.name),
+          std::string("leave ") + letter_of(axis.name) + " out: errors of rotary axes keep their own zero");
+  }
   for (const AxisName name : linear_axes(machine)) {
     const Axis& axis = machine.axis(name);
     const double q = origin[index_of(name)];

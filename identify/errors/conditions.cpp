@@ -11,8 +11,19 @@
 namespace volcal {
 namespace {
 
-constexpr std::string_view kMeanOfCampaign = "mean of the campaign",
-                           kReferenceTemperature = "reference temperature";
+constexpr std::string_view kReferenceTemperature = "reference temperature";
+
+std::string_view origin_of(const RecordedRange& range) {
+  switch (range.origin) {
+    case ConditionOrigin::Campaign:
+      return "mean of the campaign";
+    case ConditionOrigin::Tables:
+      return "of the tables";
+    case ConditionOrigin::Assumed:
+      return "assumed";
+  }
+  return "";
+}
 
 /// Whether the model reduces the scale of an axis by this channel: a key of the machine file, or an effect
 /// that names an axis and a temperature.
@@ -37,11 +48,17 @@ double number_of(const std::string& name, const std::string& text) {
 
 std::string recorded_names(const FitResult& result) {
   std::string names;
-  const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
-  for (const auto& [channel, range] : result.conditions.temperature_degC) add(temperature_of(channel).name());
-  if (result.conditions.time) add(Variable{Variable::Kind::Time}.column());
-  if (result.conditions.feed) add(Variable{Variable::Kind::Feed}.column());
-  return names.empty() ? "its campaign recorded none" : "its campaign recorded " + names;
+  bool of_campaign = true;
+  const auto add = [&](const std::string& name, const RecordedRange& range) {
+    names += (names.empty() ? "" : ", ") + name;
+    of_campaign = of_campaign && range.origin == ConditionOrigin::Campaign;
+  };
+  for (const auto& [channel, range] : result.conditions.temperature_degC)
+    add(temperature_of(channel).name(), range);
+  if (result.conditions.time) add(Variable{Variable::Kind::Time}.column(), *result.conditions.time);
+  if (result.conditions.feed) add(Variable{Variable::Kind::Feed}.column(), *result.conditions.feed);
+  if (names.empty()) return "its campaign recorded none";
+  return (of_campaign ? "its campaign recorded " : "it knows ") + names;
 }
 
 void require_plausible(const std::string& name, double value, double least, double most) {
@@ -100,8 +117,19 @@ double stated_reference_temperature(const FitResult& result, const Conditions& c
   return result.reference_temperature_degC;
 }
 
+std::string_view reference_temperature_origin(const FitResult& result) {
+  if (result.temperature_is_campaign_mean) return "mean of the campaign";
+  const bool is_fitted = !result.setups.empty();
+  const bool is_reduced =
+      is_fitted || std::ranges::any_of(result.conditions.temperature_degC, [&](const auto& entry) {
+        return knows_expansion(result, entry.first);
+      });
+  return is_reduced ? "reduced by scale expansions" : "assumed";
+}
+
 std::vector<StatedCondition> list_conditions(const FitResult& result, const Conditions& conditions) {
   const Conditions usual = default_conditions(result);
+  const RecordedConditions& recorded = result.conditions;
   const Variable feed{Variable::Kind::Feed};
   std::vector<StatedCondition> list;
   for (const auto& [channel, value] : conditions.temperature_degC) {
@@ -110,15 +138,15 @@ std::vector<StatedCondition> list_conditions(const FitResult& result, const Cond
     list.push_back({temperature_of(channel), value,
                     stated                             ? kAsStated
                     : knows_expansion(result, channel) ? kReferenceTemperature
-                                                       : kMeanOfCampaign});
+                                                       : origin_of(recorded.temperature_degC.at(channel))});
   }
   if (conditions.time)
     list.push_back({{Variable::Kind::Time},
                     *conditions.time,
-                    conditions.time == usual.time ? kMeanOfCampaign : kAsStated});
+                    conditions.time == usual.time ? origin_of(*recorded.time) : kAsStated});
   if (conditions.feed)
     list.push_back({feed, *conditions.feed / feed.unit().si_per_unit,
-                    conditions.feed == usual.feed ? kMeanOfCampaign : kAsStated});
+                    conditions.feed == usual.feed ? origin_of(*recorded.feed) : kAsStated});
   return list;
 }
 

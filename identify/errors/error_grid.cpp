@@ -356,6 +356,8 @@ PlaneTables ErrorGrid::rotations_by(const Eigen::VectorXd& parameters) const {
 }
 
 MatrixXd ErrorGrid::weighted(Rows rows, std::size_t i, std::size_t j) const {
+  if (result_.covariance.size() == 0)
+    return MatrixXd::Zero(static_cast<Eigen::Index>(axes_[i].parameters.size()), (axes_[j].*rows).cols());
   const MatrixXd covariance = result_.covariance(axes_[j].parameters, axes_[i].parameters);
   MatrixXd product = MatrixXd::Zero(covariance.cols(), (axes_[j].*rows).cols());
   add_transposed_product(covariance, axes_[j].*rows, product);

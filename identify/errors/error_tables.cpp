@@ -298,7 +298,13 @@ void for_each_table_row(const FitResult& result, const ErrorTableOptions& option
 }
 
 PoseErrorVector variance_of(const PoseErrorRows& rows, const Eigen::MatrixXd& covariance) {
+  if (covariance.size() == 0) return PoseErrorVector::Zero();
   return (rows * covariance).cwiseProduct(rows).rowwise().sum();
+}
+
+double variance_of(const Eigen::VectorXd& derivatives, const Eigen::MatrixXd& covariance) {
+  if (covariance.size() == 0) return 0.0;
+  return std::max(0.0, derivatives.dot(covariance * derivatives));
 }
 
 PoseErrorVector variance_beyond_readings(const FitResult& result, const ErrorField& field,
@@ -311,13 +317,12 @@ PoseErrorVector variance_beyond_readings(const FitResult& result, const ErrorFie
 
 std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options) {
   std::vector<ErrorTableRow> table;
-  for_each_table_row(result, options,
-                     [&](ErrorTableRow row, const Eigen::VectorXd& derivatives, double u_of_faded) {
-                       row.u = std::sqrt(std::max(0.0, derivatives.dot(result.covariance * derivatives)) +
-                                         u_of_faded * u_of_faded);
-                       row.U95 = result.coverage_factor * row.u;
-                       table.push_back(row);
-                     });
+  for_each_table_row(
+      result, options, [&](ErrorTableRow row, const Eigen::VectorXd& derivatives, double u_of_faded) {
+        row.u = std::sqrt(variance_of(derivatives, result.covariance) + u_of_faded * u_of_faded);
+        row.U95 = result.coverage_factor * row.u;
+        table.push_back(row);
+      });
   return table;
 }
 
@@ -337,10 +342,11 @@ VolumetricError volumetric_error(const FitResult& result, const ErrorField& fiel
   VolumetricError error;
   error.position = position;
   error.tool = tool.name;
-  const PoseErrorRows rows = field.rows(position, direction);
   error.value = field.at(position, direction);
   error.extrapolated = field.is_beyond_readings(position, direction);
-  PoseErrorVector variance = variance_of(rows, result.covariance);
+  PoseErrorVector variance = PoseErrorVector::Zero();
+  if (result.covariance.size() > 0)
+    variance = variance_of(field.rows(position, direction), result.covariance);
   if (error.extrapolated)
     variance = variance_beyond_readings(result, field, position, direction).cwiseMax(variance);
   variance.head<3>().array() += field.stated_tool_variance();
@@ -429,10 +435,17 @@ std::vector<Finding> unmeasured_travel(const FitResult& result) {
   return findings;
 }
 
+std::vector<Finding> effects_in_no_figure(const FitResult& result) {
+  std::vector<Finding> findings;
+  for (const EffectOnNoPose& effect : effects_on_no_pose(result))
+    findings.push_back({FindingCode::EffectInNoFigure, {{"effect", effect.label}}});
+  return findings;
+}
+
 std::vector<Finding> errors_in_no_table(const FitResult& result) {
   std::vector<Finding> findings;
-  for (const std::string& label : effects_on_no_pose(result))
-    findings.push_back({FindingCode::EffectInNoTable, {{"effect", label}}});
+  for (const EffectOnNoPose& effect : effects_on_no_pose(result))
+    findings.push_back({FindingCode::EffectInNoTable, {{"effect", effect.label}}});
   std::string axes;
   const auto add = [&axes](AxisName axis) {
     if (is_rotary(axis) && axes.find(letter_of(axis)) == std::string::npos) axes += letter_of(axis);

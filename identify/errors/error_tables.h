@@ -40,6 +40,8 @@ struct ErrorTableOptions {
 std::vector<Finding> unmeasured_travel(const FitResult& result);
 /// What was identified and is in no table of linear axes: effects that act on no pose, errors of rotary axes.
 std::vector<Finding> errors_in_no_table(const FitResult& result);
+/// "effect.in-no-figure" of effects that act on no pose: no error at a point or in the volume holds them.
+std::vector<Finding> effects_in_no_figure(const FitResult& result);
 
 std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options = {});
 /// Derivatives of the same rows to the parameters: rows x layout.size.

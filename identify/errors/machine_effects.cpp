@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "volcal/model/description/variable.h"
+#include "volcal/model/effects/conditions_of_effect.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/tensor_basis.h"
 #include "volcal/model/kinematics/rotary_datum.h"
@@ -86,7 +87,8 @@ bool acts_on_machine(const Effect& effect) {
   });
 }
 
-/// Poses that fill the travel, with both directions of approach.
+/// Poses that fill the travel, with both directions of approach. Their places are irrational shares of it, at
+/// which no wave has one phase.
 void probe_poses(const Machine& machine, std::vector<AxisPosition>& positions,
                  std::vector<ApproachDirection>& directions) {
   constexpr std::array<int, kAxisCount> kBases = {2, 3, 5, 7, 11, 13, 17, 19, 23};
@@ -96,7 +98,7 @@ void probe_poses(const Machine& machine, std::vector<AxisPosition>& positions,
     ApproachDirection direction{};
     for (const Axis& axis : machine.axes) {
       const std::size_t a = index_of(axis.name);
-      position[a] = axis.travel_min + axis.travel() * radical_inverse(i, kBases[a]);
+      position[a] = axis.travel_min + axis.travel() * std::fmod(i * std::sqrt(kBases[a]), 1.0);
       direction[a] = radical_inverse(i, kBasesOfDirections[a]) < 0.5 ? -1 : 1;
     }
     positions.push_back(position);
@@ -469,9 +471,9 @@ Eigen::MatrixXd MachineEffects::drivers_and_slopes(std::span<const AxisPosition>
   return evaluate(positions, directions, true);
 }
 
-std::vector<std::string> effects_on_no_pose(const FitResult& result) {
-  std::vector<std::string> labels;
-  if (result.identified.effects.empty()) return labels;
+std::vector<EffectOnNoPose> effects_on_no_pose(const FitResult& result) {
+  std::vector<EffectOnNoPose> found;
+  if (result.identified.effects.empty()) return found;
   const Conditions conditions = default_conditions(result);
   std::optional<double> clock_start;
   if (result.conditions.time) clock_start = result.conditions.time->min;
@@ -483,9 +485,9 @@ std::vector<std::string> effects_on_no_pose(const FitResult& result) {
     const bool acts = std::ranges::any_of(result.machine.tools, [&](const Tool& tool) {
       return ReachProbe(result.machine, tool, conditions, clock_start).reach_of(*effect).acts;
     });
-    if (!acts) labels.push_back(effect_label(*effect));
+    if (!acts) found.push_back({effect_label(*effect), conditions_of_effect(spec, *effect)});
   }
-  return labels;
+  return found;
 }
 
 }  // namespace volcal

@@ -108,8 +108,11 @@ class MachineEffects {
       uneven_in_direction_{};  ///< the mean of both directions is not the driver at 0
 };
 
-/// Effects of the model that act on no pose: they need a path or a setup, as a following error on circles.
-/// Their labels.
-std::vector<std::string> effects_on_no_pose(const FitResult& result);
+/// An effect of the model that acts on no pose: it needs a path or a setup, as a following error on circles.
+struct EffectOnNoPose {
+  std::string label;
+  std::set<Variable> conditions;  ///< that drive it
+};
+std::vector<EffectOnNoPose> effects_on_no_pose(const FitResult& result);
 
 }  // namespace volcal

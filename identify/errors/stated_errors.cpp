@@ -36,7 +36,6 @@ class StatedLayout {
     result.layout = std::move(layout_);
     result.parameters =
         Eigen::Map<Eigen::VectorXd>(values_.data(), static_cast<Eigen::Index>(values_.size()));
-    result.covariance = Eigen::MatrixXd::Zero(result.layout.size, result.layout.size);
   }
 
  private:
@@ -96,7 +95,8 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model) {
     summary.measured_max = ends.second;
   }
   constexpr RecordedRange kReference = {kReferenceTemperature_degC, kReferenceTemperature_degC,
-                                        kReferenceTemperature_degC};
+                                        kReferenceTemperature_degC, ConditionOrigin::Assumed};
+  constexpr RecordedRange kAtRest = {0.0, 0.0, 0.0, ConditionOrigin::Assumed};
   for (const Axis& axis : machine.axes) {
     if (axis.expansion) result.conditions.temperature_degC[axis.expansion->channel] = kReference;
   }
@@ -107,8 +107,8 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model) {
         result.conditions.temperature_degC[each.subject] = kReference;
     }
   }
-  result.conditions.time = model.conditions.time.value_or(RecordedRange{});
-  result.conditions.feed = model.conditions.feed.value_or(RecordedRange{});
+  result.conditions.time = model.conditions.time.value_or(kAtRest);
+  result.conditions.feed = model.conditions.feed.value_or(kAtRest);
   for (const auto& [channel, range] : model.conditions.temperature_degC)
     result.conditions.temperature_degC[channel] = range;
   return result;

@@ -7,9 +7,9 @@
 namespace volcal {
 
 /// Functions with coefficients, known locations and effects with their amplitudes; what has no value is zero.
-/// Beyond model.measured errors keep their last value. Covariance zero. What model.conditions says stands for
-/// the campaign; without it temperatures that effects name stand at 20 degC, time and feed at 0, until they
-/// are stated.
+/// Beyond model.measured errors keep their last value. No covariance. What model.conditions says stands for
+/// the campaign; without it temperatures that effects name are assumed at 20 degC, time and feed at 0, until
+/// they are stated.
 FitResult stated_result(const Machine& machine, const ModelSpec& model);
 
 /// Whether a model states an error: a function with coefficients, a known location, an effect.

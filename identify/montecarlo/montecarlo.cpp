@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
 
+#include "volcal/identify/errors/acting_conditions.h"
 #include "volcal/identify/montecarlo/draw_projection.h"
 #include "volcal/identify/montecarlo/idle_pool.h"
 #include "volcal/identify/montecarlo/path_solvers.h"
@@ -87,16 +89,37 @@ std::string_view to_string(LinearVerdict verdict) {
   return "";
 }
 
+/// The conditions that a study's values hold for, and what is to be said of them.
+struct StatedOfStudy {
+  std::vector<StatedCondition> conditions;
+  std::vector<Finding> findings;
+};
+
+namespace {
+
+StatedOfStudy stated_of_study(const FitResult& result, const MonteCarloOptions& options) {
+  const Conditions conditions = options.conditions ? *options.conditions : default_conditions(result);
+  StatedOfStudy stated{list_conditions(result, conditions), conditions_in_vain(result, conditions)};
+  std::erase_if(stated.conditions, [acting = conditions_that_act(result, conditions)](const auto& condition) {
+    return !acting.contains(condition.variable);
+  });
+  std::ranges::move(conditions_beyond_readings(result, conditions), std::back_inserter(stated.findings));
+  return stated;
+}
+
+}  // namespace
+
 class MonteCarloStudy::Work {
  public:
   Work(const Campaign& campaign, const FitResult& result, MonteCarloOptions options)
       : options_(std::move(options)),
         threads_(thread_count(options_.threads)),
         repeated_(campaign, result, options_.sources),
-        set_(quantities_of(result, options_.grid_per_axis)),
+        set_(quantities_of(result, options_.grid_per_axis, options_.conditions)),
         projection_(repeated_, set_),
         solvers_(repeated_),
         contradicted_(contradictions(result)),
+        stated_(stated_of_study(result, options_)),
         sums_(set_.items.size()),
         tolerance_(projection_.quantities()) {
     for (Eigen::Index i = 0; i < tolerance_.size(); ++i)
@@ -159,6 +182,8 @@ class MonteCarloStudy::Work {
     result.to_come = tally_.to_come;
     for (std::size_t i = 0; i < set_.items.size(); ++i) result.quantities.push_back(quantity_result(i));
     result.budget = uncertainty_budget(repeated_, set_);
+    result.conditions = stated_.conditions;
+    result.condition_findings = stated_.findings;
     result.contradicted = contradicted_;
     return result;
   }
@@ -174,6 +199,7 @@ class MonteCarloStudy::Work {
     hash.add(options_.seed);
     hash.add(static_cast<std::uint64_t>(path_));
     hash.add(static_cast<std::uint64_t>(options_.sources.functions));
+    if (options_.conditions) add(set_.rows, hash);
     return hash.value();
   }
 
@@ -459,6 +485,7 @@ class MonteCarloStudy::Work {
   DrawProjection projection_;
   PathSolvers solvers_;
   std::vector<Finding> contradicted_;
+  StatedOfStudy stated_;
   StudySums sums_;
   Eigen::ArrayXd tolerance_;  ///< by linear propagation, SI
   RefitCheck check_;

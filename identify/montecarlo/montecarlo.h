@@ -14,9 +14,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "volcal/identify/errors/conditions.h"
 #include "volcal/identify/montecarlo/draw_sums.h"
 #include "volcal/identify/montecarlo/draw_team.h"
 #include "volcal/identify/montecarlo/quantities.h"
@@ -41,6 +43,8 @@ struct MonteCarloOptions {
   int refits = 20;        ///< sample on which the paths are compared
   int grid_per_axis = 3;  ///< points of the volume
   DrawnSources sources;
+  std::optional<Conditions> conditions =
+      {};                    ///< of table values and the volume; default_conditions() when absent
   DrawTeam* team = nullptr;  ///< that shares the draws; must outlive the study; none = this process alone
 };
 
@@ -108,9 +112,11 @@ struct MonteCarloResult {
   std::uint64_t not_converged = 0;  ///< draws; they are in the sums
   double to_come = 0.0;  ///< largest bound on what further chord steps would change, standard deviations
   std::vector<QuantityResult> quantities;
-  UncertaintyBudget budget;           ///< rows as `quantities`
-  std::vector<Finding> contradicted;  ///< of the fit (contradictions(), result.h)
-  std::vector<Finding> notes;         ///< on the campaign's files (Campaign::notes)
+  UncertaintyBudget budget;                 ///< rows as `quantities`
+  std::vector<StatedCondition> conditions;  ///< that table values and the volume depend on
+  std::vector<Finding> condition_findings;  ///< stated in vain or beyond the readings
+  std::vector<Finding> contradicted;        ///< of the fit (contradictions(), result.h)
+  std::vector<Finding> notes;               ///< on the campaign's files (Campaign::notes)
 };
 
 /// One study: made, run block by block, read out.

@@ -39,9 +39,11 @@ class QuantityList {
   std::vector<Eigen::VectorXd> rows_;
 };
 
-void add_tables(const FitResult& result, QuantityList& list) {
-  const std::vector<ErrorTableRow> table = error_table(result);
-  const Eigen::MatrixXd rows = error_table_derivatives(result);
+void add_tables(const FitResult& result, const Conditions& conditions, QuantityList& list) {
+  ErrorTableOptions options;
+  options.conditions = conditions;
+  const std::vector<ErrorTableRow> table = error_table(result, options);
+  const Eigen::MatrixXd rows = error_table_derivatives(result, options);
   double largest[2] = {0.0, 0.0};
   for (const ErrorTableRow& row : table) largest[row.rotation] = std::max(largest[row.rotation], row.u);
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -128,13 +130,14 @@ void add_sizes(QuantitySet::Volume& volume, QuantityList& list) {
                share(sizes.largest));
 }
 
-QuantitySet::Volume volume_of(const FitResult& result, const Tool& tool, int per_axis) {
+QuantitySet::Volume volume_of(const FitResult& result, const Tool& tool, const Conditions& conditions,
+                              int per_axis) {
   const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
   QuantitySet::Volume volume{
       .tool = tool.name,
       .rows = Eigen::MatrixXd(3 * static_cast<Eigen::Index>(positions.size()), result.layout.size),
       .error = Eigen::VectorXd(3 * static_cast<Eigen::Index>(positions.size()))};
-  const ErrorField field(result, tool);
+  const ErrorField field(result, tool, conditions);
   Eigen::Index row = 0;
   for (const AxisPosition& position : positions) {
     volume.rows.middleRows<3>(row) = field.unheld_rows(position).topRows<3>();
@@ -208,15 +211,17 @@ VolumeSizes volume_sizes(const Eigen::Ref<const Eigen::VectorXd>& vectors) {
   return {points > 0 ? std::sqrt(squares / static_cast<double>(points)) : 0.0, std::sqrt(largest)};
 }
 
-QuantitySet quantities_of(const FitResult& result, int grid_per_axis) {
+QuantitySet quantities_of(const FitResult& result, int grid_per_axis,
+                          const std::optional<Conditions>& given) {
+  const Conditions conditions = given ? *given : default_conditions(result);
   QuantityList list(result.layout.size);
-  add_tables(result, list);
+  add_tables(result, conditions, list);
   add_parameters(result, list);
   add_surfaces(result, list);
   QuantitySet set;
   for (const Tool& tool : result.machine.tools) {
     if (grid_per_axis <= 0) break;
-    set.volumes.push_back(volume_of(result, tool, grid_per_axis));
+    set.volumes.push_back(volume_of(result, tool, conditions, grid_per_axis));
     if (!add_volume(result, set.volumes.back(), grid_per_axis, list)) set.volumes.pop_back();
   }
   set.items = std::move(list.items);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/errors/conditions.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/model/kinematics/chain.h"
 
@@ -49,8 +50,10 @@ struct QuantitySet {
   std::vector<Volume> volumes;
 };
 
-/// `grid_per_axis`: points of the volume per linear axis; 0 leaves the volume out.
-QuantitySet quantities_of(const FitResult& result, int grid_per_axis);
+/// `grid_per_axis`: points of the volume per linear axis; 0 leaves the volume out. At these conditions, the
+/// default ones where none are given.
+QuantitySet quantities_of(const FitResult& result, int grid_per_axis,
+                          const std::optional<Conditions>& conditions = {});
 
 /// Root mean square and largest length of vectors x y z x y z ...
 struct VolumeSizes {

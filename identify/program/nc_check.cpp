@@ -7,11 +7,6 @@
 namespace volcal {
 namespace {
 
-/// Places along a written segment at which errors are taken, and their weights (Gauss-Legendre of three
-/// points; the end counts for the maximum alone).
-constexpr std::array<double, 4> kPlaces = {0.1127016653792583, 0.5, 0.8872983346207417, 1.0};
-constexpr std::array<double, 4> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0, 0.0};
-
 Eigen::Vector3d value_of(const DisplacementField& field, const Eigen::Vector3d& at,
                          const ApproachDirection& directions) {
   return field({at.x(), at.y(), at.z(), 0.0, 0.0, 0.0}, directions);
@@ -71,11 +66,13 @@ void NcCheck::compare(const NcMotion& original, const NcMotion& written, double 
   const double length = (t_to - t_from) * original.length();
   const std::int64_t line = original_.place().line;
   turn_at(original, 0.5 * (t_from + t_to));
-  for (std::size_t i = 0; i < kPlaces.size(); ++i) {
-    const Eigen::Vector3d place = original.point(t_from + kPlaces[i] * (t_to - t_from));
-    const Eigen::Vector3d command = written.point(kPlaces[i]);
-    before_.take(value_of(field_, place, directions_), kWeights[i] * length, line, place);
-    after_.take(command + value_of(field_, command, directions_) - place, kWeights[i] * length, line, place);
+  weighted_shares(parts_of_length(length), shares_);
+  shares_.push_back({1.0, 0.0});  // the end counts for the maximum alone
+  for (const auto& [share, weight] : shares_) {
+    const Eigen::Vector3d place = original.point(t_from + share * (t_to - t_from));
+    const Eigen::Vector3d command = written.point(share);
+    before_.take(value_of(field_, place, directions_), weight * length, line, place);
+    after_.take(command + value_of(field_, command, directions_) - place, weight * length, line, place);
   }
   length_ += length;
 }

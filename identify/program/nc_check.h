@@ -4,12 +4,14 @@
 ///
 /// The functional point of the original at place t of its path is p(t) + e(p(t)) instead of p(t); that of the
 /// rewriting q(t) + e(q(t)). Directions of approach are those of the programmed (original) motion for both: a
-/// correction moves an axis less than its lost motion. Figures are over feed motions, weighted by length.
+/// correction moves an axis less than its lost motion. Figures are over feed motions, weighted by length, at
+/// irrational shares of every written line (sample_shares.h).
 
 #include <span>
 #include <string_view>
 
 #include "volcal/identify/program/nc_rewriter.h"
+#include "volcal/identify/program/sample_shares.h"
 
 namespace volcal {
 
@@ -54,6 +56,7 @@ class NcCheck {
   Sum before_;
   Sum after_;
   double length_ = 0.0;
+  std::vector<WeightedShare> shares_;
 };
 
 }  // namespace volcal

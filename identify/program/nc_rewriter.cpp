@@ -212,6 +212,8 @@ void NcRewriter::rewrite(std::string_view line, const Sink& sink) {
     }
   } catch (const InputError&) {
     throw;
+  } catch (const PathTooLong& error) {
+    place.refuse(error.what(), PathTooLong::remedy());
   } catch (const std::runtime_error& error) {
     place.refuse(error.what(), "look at the result's error tables");
   }

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <utility>
 
 #include "volcal/identify/compensation/compensation.h"
 #include "volcal/identify/compensation/table_format.h"
+#include "volcal/identify/errors/acting_conditions.h"
+#include "volcal/identify/program/sample_shares.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/parallel_axes.h"
 
@@ -39,82 +42,170 @@ AxisPosition axis_position_of(const Eigen::Vector3d& position) {
   return {position.x(), position.y(), position.z(), 0.0, 0.0, 0.0};
 }
 
-/// Intervals of an axis on which the drivers of effects follow a polynomial of degree 4; finer ones than
-/// kShortestInterval are not made.
+/// What the effects that vary with the position of one axis add to each error motion and to the tool's
+/// offset.
+class EffectsAlong {
+ public:
+  EffectsAlong(const MachineEffects& effects, const Eigen::VectorXd& parameters, AxisName axis)
+      : effects_(effects.subset(varying_with(effects, axis))) {
+    std::vector<std::string> targets;
+    for (std::size_t c = 0; c < effects_.amplitude_count(); ++c) {
+      const EffectColumn& column = effects_.columns()[c];
+      const bool motion = column.target.kind == TargetKind::Motion;
+      const std::string target =
+          motion ? column.target.symbol.name() : std::to_string(column.target.component);
+      const auto found = std::ranges::find(targets, target);
+      target_of_.push_back(found - targets.begin());
+      if (found == targets.end()) targets.push_back(target);
+      amplitudes_.push_back(parameters[column.parameter]);
+    }
+    target_count_ = static_cast<Eigen::Index>(targets.size());
+  }
+
+  bool empty() const { return target_of_.empty(); }
+
+  /// Positions x targets, m or rad.
+  Eigen::MatrixXd at(std::span<const AxisPosition> positions,
+                     std::span<const ApproachDirection> directions) const {
+    const Eigen::MatrixXd drivers = effects_.drivers(positions, directions);
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(drivers.rows(), target_count_);
+    for (std::size_t c = 0; c < target_of_.size(); ++c)
+      sums.col(target_of_[c]) += amplitudes_[c] * drivers.col(static_cast<Eigen::Index>(c));
+    return sums;
+  }
+
+ private:
+  static std::vector<std::size_t> varying_with(const MachineEffects& effects, AxisName axis) {
+    std::vector<std::size_t> varying;
+    for (std::size_t e = 0; e < effects.effect_count(); ++e) {
+      if (effects.reach(e).position[index_of(axis)]) varying.push_back(e);
+    }
+    return varying;
+  }
+
+  MachineEffects effects_;
+  std::vector<Eigen::Index> target_of_;  ///< by column
+  std::vector<double> amplitudes_;
+  Eigen::Index target_count_ = 0;
+};
+
+/// Intervals of an axis on which effects follow a polynomial of degree 4; finer ones than kShortestInterval
+/// are not made.
 class EffectIntervals {
  public:
-  EffectIntervals(const MachineEffects& effects, const Machine& machine)
-      : effects_(effects), machine_(machine) {}
+  EffectIntervals(const MachineEffects& effects, const FitResult& result, AxisName axis)
+      : effects_(effects, result.parameters, axis),
+        shortest_period_(shortest_wave(result, axis)),
+        machine_(result.machine),
+        axis_(axis) {}
 
-  void refine(AxisName axis, std::vector<double>& ends) const {
-    const bool depends = [&] {
-      for (std::size_t e = 0; e < effects_.effect_count(); ++e) {
-        if (effects_.reach(e).position[index_of(axis)]) return true;
-      }
-      return false;
-    }();
-    if (!depends) return;
-    const Axis& of_machine = machine_.axis(axis);
+  void refine(std::vector<double>& ends) const {
+    if (effects_.empty()) return;
+    const Axis& of_machine = machine_.axis(axis_);
     ends.push_back(of_machine.travel_min);
     ends.push_back(of_machine.travel_max);
     std::ranges::sort(ends);
     std::vector<double> added;
-    for (std::size_t i = 0; i + 1 < ends.size(); ++i) split(axis, ends[i], ends[i + 1], added);
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) split(ends[i], ends[i + 1], added);
     ends.insert(ends.end(), added.begin(), added.end());
   }
 
  private:
-  void split(AxisName axis, double begin, double end, std::vector<double>& added) const {
+  void split(double begin, double end, std::vector<double>& added) const {
     constexpr double kShortestInterval = 2e-4;  // m
-    if (end - begin < kShortestInterval || added.size() > kMostIntervals || is_smooth(axis, begin, end))
-      return;
+    if (end - begin < kShortestInterval || added.size() > kMostIntervals || is_smooth(begin, end)) return;
     const double middle = 0.5 * (begin + end);
     added.push_back(middle);
-    split(axis, begin, middle, added);
-    split(axis, middle, end, added);
+    split(begin, middle, added);
+    split(middle, end, added);
   }
 
-  /// Compares with the polynomial through five points at three others, the other axes at several places.
-  bool is_smooth(AxisName axis, double begin, double end) const {
-    constexpr std::array<double, 5> kFit = {0.0, 0.25, 0.5, 0.75, 1.0};
-    constexpr std::array<double, 3> kCheck = {0.1, 0.4, 0.9};
-    constexpr double kSame = 1e-3;  // of the largest driver: effects are micrometres, splitting is to 0.1 um
-    double largest = 0.0, deviation = 0.0;
-    for (const double share : {0.2, 0.7}) {
-      std::vector<AxisPosition> positions;
-      const auto add = [&](double of_interval) {
-        AxisPosition position{};
-        for (const Axis& other : machine_.axes) {
-          if (!is_rotary(other.name))
-            position[index_of(other.name)] = other.travel_min + share * other.travel();
-        }
-        position[index_of(axis)] = begin + of_interval * (end - begin);
-        positions.push_back(position);
+  /// Looks at one place of the other axes first, where most of what is not smooth shows.
+  bool is_smooth(double begin, double end) const {
+    return 2.0 * (end - begin) < shortest_period_ && is_quartic(begin, end, 0, 1) &&
+           is_quartic(begin, end, 1, kPlacesOfOthers);
+  }
+
+  /// Compares with the polynomial through five points at many others, with the other axes at the places from
+  /// `first` to before `last`.
+  bool is_quartic(double begin, double end, std::size_t first, std::size_t last) const {
+    constexpr double kSame = 1e-3;     // of the largest value: splitting is to 0.1 um
+    constexpr double kNothing = 1e-9;  // m or rad
+    const std::size_t checks = checks_of(end - begin);
+    std::vector<AxisPosition> positions;
+    std::vector<ApproachDirection> directions;
+    for (std::size_t place = first; place < last; ++place) {
+      const auto add = [&](double share) {
+        positions.push_back(position(place, begin + share * (end - begin)));
+        directions.push_back(direction(place));
       };
-      for (const double node : kFit) add(node);
-      for (const double node : kCheck) add(node);
-      const Eigen::MatrixXd drivers = effects_.drivers(positions, {&kTowardsPlus, 1});
-      largest = std::max(largest, drivers.cwiseAbs().maxCoeff());
-      for (std::size_t c = 0; c < kCheck.size(); ++c) {
-        Eigen::RowVectorXd through = Eigen::RowVectorXd::Zero(drivers.cols());
-        for (std::size_t i = 0; i < kFit.size(); ++i) {
-          double weight = 1.0;
-          for (std::size_t k = 0; k < kFit.size(); ++k) {
-            if (k != i) weight *= (kCheck[c] - kFit[k]) / (kFit[i] - kFit[k]);
-          }
-          through += weight * drivers.row(static_cast<Eigen::Index>(i));
-        }
-        deviation = std::max(
-            deviation,
-            (drivers.row(static_cast<Eigen::Index>(kFit.size() + c)) - through).cwiseAbs().maxCoeff());
+      for (const double node : kNodes) add(node);
+      for (std::size_t c = 0; c < checks; ++c) add(sample_share(place * checks + c));
+    }
+    const Eigen::MatrixXd values = effects_.at(positions, directions);
+    const Eigen::RowVectorXd allowed = (kSame * values.cwiseAbs().colwise().maxCoeff()).cwiseMax(kNothing);
+    for (std::size_t place = first; place < last; ++place) {
+      const auto row = static_cast<Eigen::Index>((place - first) * (kNodes.size() + checks));
+      for (std::size_t c = 0; c < checks; ++c) {
+        const Eigen::RowVectorXd quartic =
+            weights(sample_share(place * checks + c)) * values.middleRows<kNodes.size()>(row);
+        const auto at = row + static_cast<Eigen::Index>(kNodes.size() + c);
+        if (((values.row(at) - quartic).cwiseAbs().array() > allowed.array()).any()) return false;
       }
     }
-    return deviation <= kSame * largest;
+    return true;
   }
 
-  static constexpr std::size_t kMostIntervals = 20000;
-  const MachineEffects& effects_;
+  /// At all places of the others together one every half millimetre, so that narrow ones are not missed.
+  static std::size_t checks_of(double length) {
+    constexpr double kBetween = 0.5e-3;  // m
+    constexpr double kFewest = 4.0;
+    return static_cast<std::size_t>(std::max(kFewest, std::ceil(length / (kBetween * kPlacesOfOthers))));
+  }
+
+  /// Of the values at kNodes in the quartic through them.
+  static Eigen::Matrix<double, 1, 5> weights(double share) {
+    Eigen::Matrix<double, 1, 5> weights;
+    for (std::size_t i = 0; i < kNodes.size(); ++i) {
+      double weight = 1.0;
+      for (std::size_t k = 0; k < kNodes.size(); ++k) {
+        if (k != i) weight *= (share - kNodes[k]) / (kNodes[i] - kNodes[k]);
+      }
+      weights[static_cast<Eigen::Index>(i)] = weight;
+    }
+    return weights;
+  }
+
+  AxisPosition position(std::size_t place, double of_axis) const {
+    constexpr std::array<double, 3> kSteps = {0.6180339887498949, 0.4142135623730951, 0.7320508075688773};
+    AxisPosition position{};
+    for (const Axis& other : machine_.axes) {
+      if (is_rotary(other.name)) continue;
+      const double share = std::fmod(
+          (static_cast<double>(place) + 0.5) * kSteps[static_cast<std::size_t>(direction_of(other.name))],
+          1.0);
+      position[index_of(other.name)] = other.travel_min + share * other.travel();
+    }
+    position[index_of(axis_)] = of_axis;
+    return position;
+  }
+
+  /// Every place has another combination.
+  static ApproachDirection direction(std::size_t place) {
+    ApproachDirection direction = kTowardsPlus;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if ((place >> k & 1U) != 0) direction[k] = -1;
+    }
+    return direction;
+  }
+
+  static constexpr std::array<double, 5> kNodes = {0.0, 0.25, 0.5, 0.75, 1.0};
+  static constexpr std::size_t kPlacesOfOthers = 8;
+  static constexpr std::size_t kMostIntervals = 100000;
+  EffectsAlong effects_;
+  double shortest_period_;
   const Machine& machine_;
+  AxisName axis_;
 };
 
 }  // namespace
@@ -166,7 +257,7 @@ ProgramErrors program_errors(const FitResult& result, const std::string& tool_na
     for (const double end : {errors.measured.min[index_of(axis)], errors.measured.max[index_of(axis)]}) {
       if (std::isfinite(end)) ends.push_back(end);
     }
-    EffectIntervals(effects, result.machine).refine(axis, ends);
+    EffectIntervals(effects, result, axis).refine(ends);
   }
   for (auto& ends : errors.pieces) {
     std::ranges::sort(ends);

@@ -21,7 +21,11 @@ constexpr std::string_view kTcpLetters = "XYZABC";
 constexpr double kLever = 0.1;          // m, at which turns count as displacements
 constexpr double kShareOfSplits = 0.5;  // of the tolerance
 constexpr double kShareOfTcpJumps = 0.25;
-constexpr int kDeepest = 12;            // halvings of a block
+constexpr int kDeepest = 16;             // halvings of a block; what is not straight then is a step
+constexpr int kMostStepsOfBlock = 1000;  // of a block
+constexpr double kBetweenChecks = 1e-3;  // m
+constexpr double kTurnBetweenChecks = 0.25 * kRadianPerDegree;
+constexpr double kFewestChecks = 4.0, kMostChecks = 1e4;  // of a part, of a block
 constexpr double kSlightlyOn = 1e-4;    // of a block: where the directions of its axes are looked at
 constexpr double kTcpStill = 1e-12;     // m or rad
 constexpr double kNearPole = 0.1;       // of the orientation error
@@ -291,24 +295,47 @@ void TcpRewriter::require_reachable(const TcpPose& sent) const {
   }
 }
 
+double TcpRewriter::distance(const Node& node, const TcpPose& chord) const {
+  return (node.sent.point_w - chord.point_w).norm() + kLever * (node.sent.rotary - chord.rotary).norm();
+}
+
+bool TcpRewriter::is_straight(double t_from, const Node& from, double t_to, const Node& to,
+                              const Node& middle) {
+  const double allowed = kShareOfSplits * options_.tolerance;
+  if (distance(middle, TcpPose::between(from.sent, to.sent, 0.5)) > allowed) return false;
+  const double checks = std::max(kFewestChecks, std::ceil((t_to - t_from) * checks_of_block_));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(checks); ++i) {
+    const double share = sample_share(i);
+    const Node node = node_at(t_from + share * (t_to - t_from));
+    if (distance(node, TcpPose::between(from.sent, to.sent, share)) > allowed) return false;
+  }
+  return true;
+}
+
 /// Nodes behind `from` up to `to`.
 void TcpRewriter::split(double t_from, const Node& from, double t_to, const Node& to, int depth,
                         std::vector<Node>& nodes) {
   const Node middle = node_at(0.5 * (t_from + t_to));
-  bool straight = depth >= kDeepest;
-  for (const double share : {0.25, 0.5, 0.75}) {
-    if (straight) break;
-    const Node node = share == 0.5 ? middle : node_at(t_from + share * (t_to - t_from));
-    const TcpPose chord = TcpPose::between(from.sent, to.sent, share);
-    const double off =
-        (node.sent.point_w - chord.point_w).norm() + kLever * (node.sent.rotary - chord.rotary).norm();
-    if (off > kShareOfSplits * options_.tolerance) {
-      split(t_from, from, middle.t, middle, depth + 1, nodes);
-      split(middle.t, middle, t_to, to, depth + 1, nodes);
-      return;
-    }
+  const bool straight = is_straight(t_from, from, t_to, to, middle);
+  if (!straight && depth < kDeepest) {
+    split(t_from, from, middle.t, middle, depth + 1, nodes);
+    split(middle.t, middle, t_to, to, depth + 1, nodes);
+    return;
   }
+  if (!straight && ++steps_ > kMostStepsOfBlock)
+    place().refuse("the identified errors change in waves too short for the block to be split",
+                   "write the block as several, allow more by --tolerance-um, or leave the effect with these "
+                   "waves out of the model");
   nodes.push_back(to);
+}
+
+/// Nodes of a feed motion behind its first.
+void TcpRewriter::split_block(const Node& begin, const Node& end, std::vector<Node>& nodes) {
+  const double way = (to_.point_w - from_.point_w).norm() / kBetweenChecks +
+                     (to_.rotary - from_.rotary).norm() / kTurnBetweenChecks;
+  checks_of_block_ = std::clamp(way, 1.0, kMostChecks);
+  steps_ = 0;
+  split(0.0, begin, 1.0, end, 0, nodes);
 }
 
 TcpPose TcpRewriter::rounded(const TcpPose& pose) const {
@@ -343,10 +370,8 @@ void TcpRewriter::note_node(const Node& node) {
   if (summary_.near_poles++ == 0) summary_.first_near_pole = place().line;
 }
 
-/// Three Gauss points a segment, as the written numbers have it.
+/// As the written numbers have it.
 void TcpRewriter::note_errors(const std::vector<Node>& nodes) {
-  constexpr std::array<double, 3> kGaussPlaces = {0.1127016653792583, 0.5, 0.8872983346207417};
-  constexpr std::array<double, 3> kGaussWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   const double length = (to_.point_w - from_.point_w).norm();
   summary_.length += length;
   TcpPose begin = sent_;
@@ -354,14 +379,14 @@ void TcpRewriter::note_errors(const std::vector<Node>& nodes) {
   for (const Node& node : nodes) {
     const TcpPose end = rounded(node.sent);
     const double part = node.t - t_begin;
-    for (std::size_t i = 0; i < kGaussPlaces.size() && part > 0.0; ++i) {
-      const double t = t_begin + kGaussPlaces[i] * part;
+    weighted_shares(static_cast<std::size_t>(std::ceil(part * checks_of_block_)), shares_);
+    for (const auto& [share, share_of_weight] : shares_) {
+      const double t = t_begin + share * part;
       const TcpPose meant = TcpPose::between(from_, to_, t);
       const ApproachDirection directions = directions_at(t);
       const TcpMachine::Left before = tcp_->left(meant, meant, directions);
-      const TcpMachine::Left after =
-          tcp_->left(TcpPose::between(begin, end, kGaussPlaces[i]), meant, directions);
-      const double weight = kGaussWeights[i] * part * length;
+      const TcpMachine::Left after = tcp_->left(TcpPose::between(begin, end, share), meant, directions);
+      const double weight = share_of_weight * part * length;
       square_before_ += weight * before.point * before.point;
       square_after_ += weight * after.point * after.point;
       axis_before_ += weight * before.axis * before.axis;
@@ -392,7 +417,7 @@ void TcpRewriter::move(const Words& words, const NcBlock& block) {
     const double jump =
         (begin.sent.point_w - sent_.point_w).norm() + kLever * (begin.sent.rotary - sent_.rotary).norm();
     if (jump > kShareOfTcpJumps * options_.tolerance) nodes.push_back(begin);
-    split(0.0, begin, 1.0, end, 0, nodes);
+    split_block(begin, end, nodes);
     if (options_.check) note_errors(nodes);
   }
   for (const Node& node : nodes) {

@@ -6,7 +6,8 @@
 /// In that mode X, Y, Z are coordinates of the functional point in a work coordinate system that turns with
 /// the table, as the machine lies with its rotary axes at 0; A, B, C are positions of the rotary axes.
 /// Between blocks all of them change in proportion. A block becomes several where the straight way between
-/// its corrected ends would leave the corrected path by more than the tolerance.
+/// its corrected ends would leave the corrected path by more than the tolerance, which is looked at in many
+/// irrational shares of it (sample_shares.h).
 ///
 /// Followed there: G0, G1, G90, G17 to G21, G40, G54 to G59.3, G64, G80, G93, G94, F, S, T, M. Outside it
 /// rapids and what moves nothing are copied; feed motions are refused, since errors of a machine with turned
@@ -22,6 +23,7 @@
 #include <vector>
 
 #include "volcal/identify/program/nc_rewriter.h"
+#include "volcal/identify/program/sample_shares.h"
 #include "volcal/identify/program/tcp_machine.h"
 
 namespace volcal {
@@ -88,8 +90,11 @@ class TcpRewriter {
   void move(const Words& words, const NcBlock& block);
   void rapid_outside(const Words& words);
   void set_target(const Words& words);
+  void split_block(const Node& begin, const Node& end, std::vector<Node>& nodes);
   void split(double t_from, const Node& from, double t_to, const Node& to, int depth,
              std::vector<Node>& nodes);
+  bool is_straight(double t_from, const Node& from, double t_to, const Node& to, const Node& middle);
+  double distance(const Node& node, const TcpPose& chord) const;
   Node node_at(double t);
   ApproachDirection directions_at(double t);
   void require_reachable(const TcpPose& sent) const;
@@ -121,6 +126,9 @@ class TcpRewriter {
   std::array<bool, 3> point_known_{}, rotary_known_{};
   TcpPose from_, to_;  ///< of the block in hand, as programmed
   ApproachDirection last_directions_{}, directions_{};
+  double checks_of_block_ = 0.0;  ///< places of the block in hand at which it is compared with its chords
+  int steps_ = 0;                 ///< of the block in hand: shortest parts that are not straight
+  std::vector<WeightedShare> shares_;
   TcpPose sent_;  ///< at the end of the last block, as it is written
   bool sent_known_ = false;
   std::array<std::string, 6> written_words_;  ///< X Y Z A B C as they stand last in the written program

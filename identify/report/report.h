@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "volcal/identify/compensation/made_tables.h"
+#include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/compensation/measurement_record.h"
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/montecarlo/montecarlo.h"

@@ -5,6 +5,18 @@
 #include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
+namespace {
+
+/// Without what is assumed or holds for tables.
+RecordedConditions of_campaign(RecordedConditions conditions) {
+  const auto is_other = [](const RecordedRange& range) { return range.origin != ConditionOrigin::Campaign; };
+  std::erase_if(conditions.temperature_degC, [&](const auto& entry) { return is_other(entry.second); });
+  if (conditions.time && is_other(*conditions.time)) conditions.time.reset();
+  if (conditions.feed && is_other(*conditions.feed)) conditions.feed.reset();
+  return conditions;
+}
+
+}  // namespace
 
 std::string_view to_string(FitStatus status) {
   switch (status) {
@@ -18,6 +30,12 @@ std::string_view to_string(FitStatus status) {
       return "not_converged";
   }
   return "";
+}
+
+Eigen::MatrixXd covariance_of(const FitResult& result, const std::vector<int>& parameters) {
+  const auto size = static_cast<Eigen::Index>(parameters.size());
+  if (result.covariance.size() == 0) return Eigen::MatrixXd::Zero(size, size);
+  return result.covariance(parameters, parameters);
 }
 
 std::vector<Finding> contradictions(const FitResult& result) {
@@ -47,7 +65,7 @@ std::map<AxisName, std::pair<double, double>> measured_positions(const FitResult
 ModelSpec model_with_measured_travel(const FitResult& result) {
   constexpr double kSameEnd = 1e-6;  // m or rad
   ModelSpec model = result.identified;
-  if (!model.effects.empty()) model.conditions = result.conditions;
+  if (!model.effects.empty()) model.conditions = of_campaign(result.conditions);
   for (const auto& [axis, ends] : measured_positions(result)) {
     if (!result.machine.has_axis(axis)) continue;
     const Axis& travel = result.machine.axis(axis);

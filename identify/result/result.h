@@ -135,7 +135,8 @@ struct FitResult {
   ModelSpec identified;  ///< model with breakpoints, coefficients and squareness; can be loaded again
   ParameterLayout layout;
   Eigen::VectorXd parameters;  ///< SI
-  Eigen::MatrixXd covariance;  ///< of `parameters`, SI; singular by the datum
+  /// Of `parameters`, SI; singular by the datum. Without rows where errors are stated, which have none.
+  Eigen::MatrixXd covariance;
   double reference_temperature_degC = kReferenceTemperature_degC;
   bool temperature_is_campaign_mean = false;
   RecordedConditions conditions;
@@ -160,6 +161,9 @@ struct FitResult {
   std::vector<Timing> timings;
   std::shared_ptr<const Adjustment> adjustment;  ///< adjustment.h; null in a result read from files
 };
+
+/// Of these parameters; zero where errors are stated.
+Eigen::MatrixXd covariance_of(const FitResult& result, const std::vector<int>& parameters);
 
 /// Findings that the fit did not converge or that readings contradict its model: what is made of it is not
 /// the whole error.

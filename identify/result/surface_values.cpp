@@ -83,6 +83,7 @@ std::vector<SurfaceValues> surface_values(const FitResult& result) {
 
 Eigen::VectorXd uncertainty_of_values(const FitResult& result, const SurfaceValues& surface,
                                       const Eigen::MatrixXd& rows) {
+  if (result.covariance.size() == 0) return Eigen::VectorXd::Zero(rows.rows());
   const auto own = result.covariance.block(surface.offset, surface.offset, rows.cols(), rows.cols());
   return (rows * own).cwiseProduct(rows).rowwise().sum().cwiseMax(0.0).cwiseSqrt();
 }

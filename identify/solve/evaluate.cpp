@@ -146,7 +146,7 @@ OpenErrors identified_errors(const FitResult& identified, const ParameterLayout&
     fitted.push_back(source);
     open.place.push_back(target);
   }
-  open.covariance = identified.covariance(fitted, fitted);
+  open.covariance = covariance_of(identified, fitted);
   return open;
 }
 

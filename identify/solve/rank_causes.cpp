@@ -96,6 +96,12 @@ std::optional<AxisName> rotary_axis_of(const std::string& name) {
   return location && is_rotary(location->axis) ? std::optional(location->axis) : std::nullopt;
 }
 
+bool is_of_linear_axis(const std::string& name) {
+  const auto symbol = ErrorSymbol::parse(name);
+  const auto location = LocationSymbol::parse(name);
+  return (symbol && !is_rotary(symbol->axis)) || (location && !is_rotary(location->axis));
+}
+
 /// Does some reading stand with two rotary axes turned away from home?
 bool turns_two_at_once(const Campaign& campaign, const std::vector<AxisName>& moving) {
   for (const Setup& setup : campaign.setups) {
@@ -258,6 +264,8 @@ Finding cause_exchangeable(const MeasurementModel& model, const std::string& nam
   }
   if (station_count > 0 && station_count < 3) remedies.emplace_back("stations");
   if (const auto rotary = rotary_axis_of(name)) {
+    if (station_count == 0 && std::ranges::any_of(partners, is_of_linear_axis))
+      remedies.emplace_back("linear-axes");
     for (std::string& remedy : rotary_remedies(model, *rotary, cause)) remedies.push_back(std::move(remedy));
   } else if (tools_in_use(model.campaign()) < 2) {
     remedies.emplace_back("second-tool");

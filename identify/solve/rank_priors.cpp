@@ -82,6 +82,7 @@ GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum,
 }
 
 GaussianPrior above_rounding(const Eigen::MatrixXd& data, GaussianPrior wide) {
+  if (data.rows() == 0) return wide;
   const Eigen::MatrixXd total = data + wide.precision;
   const auto factor = cholesky_lower(total);
   const auto pivots = [&] { return factor->diagonal().array().square() / total.diagonal().array(); };

@@ -454,11 +454,19 @@ void TomlDocument::require_format(const std::string& format) const {
   table.fail("format", "format is \"" + printable(given) + "\"", remedy);
 }
 
-void TomlDocument::reject_unknown() const {
+namespace {
+
+void reject_unknown_below(const TomlNode& table, const std::string& path, const std::string& file) {
   Unknown first;
-  find_first_unknown(source_->root, "", first);
+  find_first_unknown(table, path, first);
   if (!first.node) return;
-  throw InputError({source_->file, first.node->line}, "unknown key " + printable(first.path), first.remedy);
+  throw InputError({file, first.node->line}, "unknown key " + printable(first.path), first.remedy);
 }
+
+}  // namespace
+
+void TomlTable::reject_unknown() const { reject_unknown_below(*node_, path_, source_->file); }
+
+void TomlDocument::reject_unknown() const { reject_unknown_below(source_->root, "", source_->file); }
 
 }  // namespace volcal

@@ -90,6 +90,9 @@ class TomlTable {
   /// instead of "add KEY".
   [[noreturn]] void fail_missing(std::string_view key, const std::string& remedy = "") const;
 
+  /// Throws for the first key of this table that was never asked for.
+  void reject_unknown() const;
+
  private:
   detail::TomlNode* find(std::string_view key) const;
   std::string name(std::string_view key) const;  ///< with the path of the table

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "volcal/identify/words/sentence_lists.h"
@@ -33,6 +34,52 @@ std::string condition_beyond_readings(const Finding& finding) {
       finding.number("measured_to").in_unit(), value.unit);
 }
 
+std::string condition_without_effect(const Finding& finding) {
+  return "no identified error depends on " + finding.text("condition") + ": it changes nothing";
+}
+
+std::string condition_on_paths_alone(const Finding& finding) {
+  return fmt::format("{} drives {} alone, which acts along a path: it changes none of these figures",
+                     finding.text("condition"), fmt::join(finding.texts("effects"), ", "));
+}
+
+std::string errors_of_tables(const Finding& finding) {
+  const std::vector<std::string> shared = finding.texts("shared_effects"),
+                                 left_out = finding.texts("effects_in_no_table");
+  std::vector<std::string> made_for;
+  if (finding.has("tool")) made_for.push_back("tool " + finding.text("tool"));
+  const std::vector<std::string> conditions = finding.texts("conditions");
+  const std::vector<FindingNumber> values = finding.numbers("values");
+  for (std::size_t i = 0; i < std::min(conditions.size(), values.size()); ++i)
+    made_for.push_back(fmt::format("{} {:.6g} {}", conditions[i], values[i].in_unit(), values[i].unit));
+  std::string text = "these errors are those of tables";
+  if (!made_for.empty()) text += fmt::format(" for {}", fmt::join(made_for, ", "));
+  if (!shared.empty())
+    text += fmt::format("; of {} they hold what is nearest to it in a rigid body with that tool",
+                        fmt::join(shared, ", "));
+  if (!left_out.empty())
+    text += fmt::format("; {} {} in none of them", fmt::join(left_out, ", "),
+                        left_out.size() == 1 ? "is" : "are");
+  return text;
+}
+
+std::string tables_of_other_tool(const Finding& finding) {
+  return fmt::format(
+      "the tables were made for tool {}: of tool {} they do not hold the effects that differ between tools",
+      finding.text("tables_tool"), finding.text("tool"));
+}
+
+std::string tables_of_other_conditions(const Finding& finding) {
+  const FindingNumber &held = finding.number("of_tables"), &asked = finding.number("value");
+  return fmt::format("the tables hold for {0} = {1:.6g} {3}: {0} = {2:.6g} {3} changes nothing in them",
+                     finding.text("condition"), held.in_unit(), asked.in_unit(), asked.unit);
+}
+
+std::string effect_in_no_figure(const Finding& finding) {
+  return finding.text("effect") +
+         " was identified and is in none of these figures: it acts along a path or in one setup";
+}
+
 std::string effect_in_no_table(const Finding& finding) {
   return finding.text("effect") + " was identified and is in no table: it acts along a path or in one setup";
 }
@@ -47,6 +94,31 @@ std::string rotary_in_no_table(const Finding& finding) {
 std::string rotary_partly_in_tables(const Finding& finding) {
   return fmt::format("of the errors of axis {} the tables hold {} alone", finding.text("axis"),
                      finding.text("type"));
+}
+
+std::string rotary_unknown_to_tables(const Finding& finding) {
+  const std::string& axis = finding.text("axis");
+  return fmt::format(
+      "errors of axis {} were not identified: the tables hold with {} at 0, and what {} does elsewhere is in "
+      "none of these figures; measure with {} in several positions",
+      axis, axis, axis, axis);
+}
+
+std::string levers_of_tilted_head(const Finding& finding) {
+  return fmt::format(
+      "tables of linear axes are made with the rotary axes at 0: where the head ({}) is tilted, angles of "
+      "linear axes act by another lever, which leaves {:.2f} um RMS, {:.2f} um at most over all poses; "
+      "volcal "
+      "compensate corrects a program with the axes where they stand",
+      finding.text("axes"), finding.number("rms").in_unit(), finding.number("max").in_unit());
+}
+
+std::string rotary_tables_off_ideal(const Finding& finding) {
+  return fmt::format(
+      "tables of rotary axes are up to {:.2f} um off what their types could correct: what changes within one "
+      "of "
+      "their steps, as the errors of a worm, needs a finer --rotary-step",
+      finding.number("off").in_unit());
 }
 
 std::string rotary_not_in_model(const Finding& finding) {
@@ -76,9 +148,18 @@ std::span<const SentenceMaker> error_sentences() {
       {FindingCode::ErrorsHeldBeyondReadings, held_beyond_readings},
       {FindingCode::ErrorsFadedBeyondReadings, faded_beyond_readings},
       {FindingCode::ConditionBeyondReadings, condition_beyond_readings},
+      {FindingCode::ConditionWithoutEffect, condition_without_effect},
+      {FindingCode::ConditionOnPathsAlone, condition_on_paths_alone},
+      {FindingCode::ErrorsOfTables, errors_of_tables},
+      {FindingCode::TablesOfOtherTool, tables_of_other_tool},
+      {FindingCode::TablesOfOtherConditions, tables_of_other_conditions},
       {FindingCode::EffectInNoTable, effect_in_no_table},
+      {FindingCode::EffectInNoFigure, effect_in_no_figure},
       {FindingCode::RotaryErrorsInNoTable, rotary_in_no_table},
       {FindingCode::RotaryErrorsPartlyInTables, rotary_partly_in_tables},
+      {FindingCode::RotaryErrorsUnknownToTables, rotary_unknown_to_tables},
+      {FindingCode::LeversOfTiltedHead, levers_of_tilted_head},
+      {FindingCode::RotaryTablesOffIdeal, rotary_tables_off_ideal},
       {FindingCode::RotaryErrorsNotInModel, rotary_not_in_model},
       {FindingCode::RotaryHarmonicsHidden, harmonics_hidden},
   });

@@ -7,10 +7,14 @@
 
 namespace volcal {
 
+/// Who says a condition: readings of a campaign, tables that errors were read from, or nobody.
+enum class ConditionOrigin { Campaign, Tables, Assumed };
+
 struct RecordedRange {
   double min = 0.0;
   double mean = 0.0;
   double max = 0.0;
+  ConditionOrigin origin = ConditionOrigin::Campaign;
 };
 
 /// Conditions under which a campaign was measured, as far as its files record them.

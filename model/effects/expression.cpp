@@ -50,6 +50,24 @@ std::vector<Name> names_of(const std::string& text) {
   return names;
 }
 
+constexpr std::size_t kLongestExpression = 4000;  // characters; muParser takes less than 5000
+constexpr int kDeepestParentheses = 100;
+
+void refuse_size(const std::string& text) {
+  if (text.size() > kLongestExpression)
+    throw ExpressionError("it is longer than " + std::to_string(kLongestExpression) +
+                              " characters; write a shorter one, or several effects",
+                          kLongestExpression + 1, text.substr(kLongestExpression, 1));
+  int depth = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == ')') --depth;
+    if (text[at] == '(' && ++depth > kDeepestParentheses)
+      throw ExpressionError("its parentheses are nested more than " + std::to_string(kDeepestParentheses) +
+                                " deep; write it with fewer",
+                            at + 1, "(");
+  }
+}
+
 mu::Parser parser_of(const std::string& text) {
   mu::Parser parser;
   parser.DefineConst("pi", std::numbers::pi);
@@ -81,6 +99,12 @@ std::string problem_of(const mu::ParserError& error) {
   }
 }
 
+[[noreturn]] void fail_to_read(const std::string& text, const mu::ParserError& error) {
+  const auto at = static_cast<std::size_t>(std::max(0, error.GetPos()));
+  const std::string token = error.GetToken().substr(0, error.GetToken().find_last_not_of(' ') + 1);
+  throw ExpressionError(problem_of(error), std::min(at, text.size()) + 1, at < text.size() ? token : "");
+}
+
 /// `=` that is not part of a comparison: in muParser it would assign.
 void refuse_assignment(const std::string& text) {
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -102,21 +126,21 @@ ExpressionError::ExpressionError(const std::string& problem, std::size_t charact
       token_(std::move(token)) {}
 
 Expression::Expression(std::string text, const IsVariable& is_variable) : text_(std::move(text)) {
-  mu::Parser parser = parser_of(text_);
-  for (const Name& name : names_of(text_)) {
-    if (name.called && parser.GetFunDef().contains(name.text)) continue;
-    if (!name.called && parser.GetConst().contains(name.text)) continue;
-    if (name.called) throw ExpressionError("a function of this name is not known", name.at + 1, name.text);
-    if (!is_variable(name.text)) {
-      throw ExpressionError("a variable of this name is not known", name.at + 1, name.text);
-    }
-    if (uses(name.text)) continue;
-    variables_.push_back(name.text);
-    characters_.push_back(name.at + 1);
-  }
-  refuse_assignment(text_);
-  double anything = 1.0;
+  refuse_size(text_);
   try {
+    mu::Parser parser = parser_of(text_);
+    for (const Name& name : names_of(text_)) {
+      if (name.called && parser.GetFunDef().contains(name.text)) continue;
+      if (!name.called && parser.GetConst().contains(name.text)) continue;
+      if (name.called) throw ExpressionError("a function of this name is not known", name.at + 1, name.text);
+      if (!is_variable(name.text))
+        throw ExpressionError("a variable of this name is not known", name.at + 1, name.text);
+      if (uses(name.text)) continue;
+      variables_.push_back(name.text);
+      characters_.push_back(name.at + 1);
+    }
+    refuse_assignment(text_);
+    double anything = 1.0;
     for (const std::string& variable : variables_) parser.DefineVar(variable, &anything);
     int results = 0;
     parser.Eval(results);
@@ -124,9 +148,7 @@ Expression::Expression(std::string text, const IsVariable& is_variable) : text_(
       throw ExpressionError("a comma stands outside of a function", text_.find(',') + 1, ",");
     }
   } catch (const mu::ParserError& error) {
-    const auto at = static_cast<std::size_t>(std::max(0, error.GetPos()));
-    const std::string token = error.GetToken().substr(0, error.GetToken().find_last_not_of(' ') + 1);
-    throw ExpressionError(problem_of(error), std::min(at, text_.size()) + 1, at < text_.size() ? token : "");
+    fail_to_read(text_, error);
   }
 }
 
@@ -139,7 +161,7 @@ std::size_t Expression::character_of(const std::string& variable) const {
   return found == variables_.end() ? 0 : characters_[static_cast<std::size_t>(found - variables_.begin())];
 }
 
-Eigen::VectorXd Expression::evaluate(const Eigen::MatrixXd& values) const {
+Eigen::VectorXd Expression::evaluate(const Eigen::MatrixXd& values) const try {
   mu::Parser parser = parser_of(text_);
   std::vector<double> current(variables_.size());
   for (std::size_t k = 0; k < variables_.size(); ++k) parser.DefineVar(variables_[k], &current[k]);
@@ -149,6 +171,8 @@ Eigen::VectorXd Expression::evaluate(const Eigen::MatrixXd& values) const {
     result[row] = parser.Eval();
   }
   return result;
+} catch (const mu::ParserError& error) {
+  fail_to_read(text_, error);
 }
 
 std::vector<std::string> Expression::function_names() {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/io/campaign/machine_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
@@ -196,6 +197,7 @@ sim::TruthSettings known_truth(const std::string& path, const Machine& machine, 
   truth.errors = model_with_measured_travel(known);
   truth.errors_file = path;
   if (truth.errors->file.empty()) truth.errors->file = path;
+  truth.notes = findings_of_tables(known);
   for (const Axis& axis : machine.axes) {
     if (!axis.expansion) continue;
     ScaleExpansion exact = *axis.expansion;

@@ -99,7 +99,9 @@ class MachineWithEffect {
       : study_(hiding_study(options, structure, effect)),
         effect_(effect),
         simulated_(sim::simulate(study_)),
-        points_(volume_points(study_.machine, kVolumeCells)) {
+        points_(volume_points(study_.machine, kVolumeCells)),
+        lattice_(volume_lattice(study_.machine, kVolumeCells)) {
+    std::erase_if(points_, [](const VolumePoint& point) { return !point.inside; });
     surroundings_.temperature[kChannel] = kTemperature_degC;
     surroundings_.tool = *study_.machine.tool_index(kTool);
     surroundings_.settled = true;
@@ -174,7 +176,7 @@ class MachineWithEffect {
     Compensation::LineField along;
     if (format.rigid) {
       const auto rigid = std::make_shared<const RigidIdeal>(
-          study_.machine, points_, [this](const VolumePoint& point) { return true_error(point); }, both);
+          study_.machine, lattice_, [this](const VolumePoint& point) { return true_error(point); }, both);
       if (format.supported.contains(CompensationType::volumetric())) return rms_of(rigid->left());
       along = [rigid](AxisName axis, double q, int direction) { return rigid->along(axis, q, direction); };
     }
@@ -189,7 +191,7 @@ class MachineWithEffect {
 
   double rms_of(const std::vector<Eigen::Vector3d>& errors) const {
     std::vector<Eigen::Vector3d> places;
-    for (const VolumePoint& point : points_)
+    for (const VolumePoint& point : lattice_)
       places.emplace_back(point.position[0], point.position[1], point.position[2]);
     return sim::rms_after_alignment(places, errors);
   }
@@ -197,7 +199,8 @@ class MachineWithEffect {
   sim::Study study_;
   const EffectCase& effect_;
   sim::SimulatedCampaign simulated_;
-  std::vector<VolumePoint> points_;
+  std::vector<VolumePoint> points_;   ///< where errors are judged
+  std::vector<VolumePoint> lattice_;  ///< where the ideal of a format by positions is solved
   sim::MachineState surroundings_;
   Eigen::Vector3d tool_ = Eigen::Vector3d::Zero();
 };

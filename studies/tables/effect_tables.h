@@ -2,7 +2,7 @@
 /// Effects that no rigid body has, in tables: simulated machines with such an effect are measured, identified
 /// with the rigid model and with the effect, and compensated with the files of every format; the exact
 /// machine that applies them (sim/machine/control.h) is judged where `volcal tables` prints what is left: at
-/// the points of volume_points(), for the same tool and conditions.
+/// the points of volume_points() inside the volume, for the same tool and conditions.
 
 #include <cstdint>
 #include <functional>

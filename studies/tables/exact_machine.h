@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/identify/compensation/table_format.h"
-#include "volcal/identify/compensation/volume_check.h"
 #include "volcal/sim/machine/control.h"
 #include "volcal/sim/machine/truth_machine.h"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 
 namespace volcal::cli {
 

@@ -4,9 +4,14 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -221,6 +226,191 @@ TEST_F(ConditionsOfPrograms, StandBehindASemicolonWhereBracketsAreNoComment) {
                                  " --work-offset G54=X0,Y0,Z0");
   EXPECT_EQ(twice.exit_code, 2);
   EXPECT_THAT(twice.errors, HasSubstr("has been compensated already"));
+}
+
+/// Machines whose only error is one wave or expression of X, with X from -400 to 400 mm and its home at 0.
+class ProgramsOfWaves : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream machine(path("machine.toml"));
+    machine << "format = \"volcal-machine-1\"\nname = \"waves\"\nstructure = \"w b X Y Z t\"\n"
+               "[datum]\nprimary = \"X\"\nsecondary = \"Y\"\n";
+    for (const char axis : std::string("XYZ"))
+      machine << "[axes." << axis
+              << "]\ntravel_mm = [-400, 400]\nhome_mm = 0\nreference_point_mm = [0, 0, 0]\n";
+    machine << "[tools.short]\noffset_mm = [0, 0, -150]\n";
+    std::ofstream(path("line.ngc")) << "G21 G90 G54 G17\nG0 X-400 Y5 Z0\nG1 X400 F1000\nM2\n";
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  void write_effect(const std::string& effect) const {
+    std::ofstream(path("model.toml")) << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n"
+                                         "[functions]\ndefault = { basis = \"zero\" }\n[[effects]]\n"
+                                      << effect;
+  }
+  void write_wave(double period_mm) const {
+    write_effect("kind = \"lead-error\"\nsymbol = \"EYX\"\ncos_um = 5.0\nsin_um = 0.0\nperiod_mm = " +
+                 std::to_string(period_mm) + "\n");
+  }
+  auto compensate(const std::string& options) const {
+    return run_program("compensate " + path("model.toml") + " " + path("line.ngc") +
+                       " --work-offset G54=X0,Y0,Z0 --check --json " + options);
+  }
+  /// Largest distance in um, along the line of the program, of the written Y from 5 mm less the error.
+  double largest_left(const std::function<double(double x_mm)>& error_um) const {
+    std::istringstream lines(content(path("out.ngc")));
+    double x = 0.0, y = 0.0, largest = 0.0;
+    bool feed = false;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("(") || line.starts_with("M") || line.starts_with("G21")) continue;
+      double x_to = x, y_to = y;
+      std::istringstream words(line);
+      for (std::string word; words >> word;) {
+        if (word == "G1") feed = true;
+        if (word[0] == 'X') x_to = std::stod(word.substr(1));
+        if (word[0] == 'Y') y_to = std::stod(word.substr(1));
+      }
+      const int places = static_cast<int>(std::ceil(std::abs(x_to - x) / 0.0137)) + 3;
+      for (int i = 0; feed && i <= places; ++i) {
+        const double share = static_cast<double>(i) / places;
+        const double at = x + share * (x_to - x);
+        largest = std::max(largest, std::abs(1e3 * (y + share * (y_to - y) - 5.0) + error_um(at)));
+      }
+      x = x_to;
+      y = y_to;
+    }
+    return largest;
+  }
+
+ private:
+  testing::ScratchFolder folder_;
+};
+
+constexpr double kRoundedTolerance_um = 0.55;  // half of 0.1 um is rounded
+
+/// EYX moves the tool by +Y: the command is Y less 5 um cos(2 pi x / period). All periods but one divide the
+/// travel, 12.5 mm and 6.25 mm in a power of 2.
+TEST_F(ProgramsOfWaves, KeepTheToleranceWhateverThePeriod) {
+  for (const double period : {20.0, 12.5, 10.0, 7.3, 6.25, 5.0, 2.0, 0.5}) {
+    write_wave(period);
+    const auto run = compensate("-o " + path("out.ngc"));
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const auto error = [period](double x) { return 5.0 * std::cos(2.0 * std::numbers::pi * x / period); };
+    EXPECT_LE(largest_left(error), kRoundedTolerance_um) << period << " mm";
+    const auto json = nlohmann::json::parse(run.output);
+    EXPECT_LE(json.at("check").at("after").at("max_um").get<double>(), kRoundedTolerance_um) << period;
+    // A chord of h is h^2 / 8 (2 pi / period)^2 5 um off: at least 3.5 of them a period.
+    const double periods = 800.0 / period;
+    EXPECT_GE(json.at("lines_written").get<double>(), 3.5 * periods) << period;
+    EXPECT_LE(json.at("lines_written").get<double>(), 14.0 * periods) << period;
+  }
+}
+
+/// Also where the wave is in an expression, shows in one direction alone, or in a part of the other axis.
+TEST_F(ProgramsOfWaves, KeepTheToleranceForExpressions) {
+  const auto wave = [](double x) { return 5.0 * std::sin(2.0 * std::numbers::pi * x / 20.0); };
+  for (const std::string expression :
+       {"sin(2 * pi * x / 20)", "sin(2 * pi * x / 20) * sin(2 * pi * y / 20)",
+        "(dir_x > 0) * sin(2 * pi * x / 20)", "x * x * 0 + sin(2 * pi * x / 20)"}) {
+    write_effect("kind = \"custom\"\ntarget = \"EYX\"\namplitude_um = 5.0\nexpression = \"" + expression +
+                 "\"\n");
+    const auto run = compensate("-o " + path("out.ngc"));
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_LE(largest_left(wave), kRoundedTolerance_um) << expression;
+  }
+}
+
+/// A line in one piece from crest to crest: 5 um (cos - 1) are left, by hand 10 um at most and RMS 5 um
+/// sqrt(3 / 2); as programmed 5 um and 5 um / sqrt(2).
+TEST_F(ProgramsOfWaves, AreCheckedAtAllPhases) {
+  std::ofstream(path("line.ngc")) << "G21 G90 G54 G17\nG0 X-40 Y5 Z0\nG1 X40 F1000\nM2\n";
+  for (const double period : {20.0, 5.0, 2.0}) {
+    write_wave(period);
+    const auto run = compensate("--tolerance-um 60");
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    const auto json = nlohmann::json::parse(run.output);
+    EXPECT_EQ(json.at("split_lines"), 0);
+    const auto& check = json.at("check");
+    EXPECT_NEAR(check.at("before").at("rms_um").get<double>(), 5.0 / std::sqrt(2.0), 0.1) << period;
+    EXPECT_NEAR(check.at("after").at("rms_um").get<double>(), 5.0 * std::sqrt(1.5), 0.1) << period;
+    EXPECT_NEAR(check.at("after").at("max_um").get<double>(), 10.0, 0.1) << period;
+  }
+}
+
+TEST_F(ProgramsOfWaves, AreRefusedWhereTheyWouldBecomeTooLong) {
+  write_wave(0.01);
+  const auto run = compensate("-o " + path("out.ngc"));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, HasSubstr("line.ngc:3: the identified errors change in waves so short that the "
+                                    "line would become more than 100000 lines within the tolerance"));
+  EXPECT_THAT(run.errors, HasSubstr("--tolerance-um"));
+  EXPECT_FALSE(std::filesystem::exists(path("out.ngc")));
+}
+
+/// A head whose C has a worm error of 4 deg: with B at 0 the tool turns about itself, and C alone is
+/// corrected, by -60 urad cos(2 pi C / 4 deg). From 0 to 32 deg every halving of the line meets a crest.
+TEST_F(ProgramsOfWaves, KeepTheToleranceForWormsOfRotaryAxes) {
+  std::ofstream machine(path("machine.toml"), std::ios::app);
+  machine << "[axes.C]\ntravel_deg = [-180, 180]\nhome_deg = 0\ncentre_mm = [0, 0, 150]\n"
+             "[axes.B]\ntravel_deg = [-90, 90]\nhome_deg = 0\ncentre_mm = [0, 0, 150]\n";
+  machine.close();
+  std::string text = content(path("machine.toml"));
+  text.replace(text.find("X Y Z t"), 7, "X Y Z C B t");
+  std::ofstream(path("machine.toml")) << text;
+  write_effect(
+      "kind = \"worm-error\"\nsymbol = \"ECC\"\nperiod_deg = 4.0\ncos_urad = 60.0\nsin_urad = 0.0\n");
+  // C counts as identified.
+  std::string model = content(path("model.toml"));
+  model.insert(model.find("[[effects]]"),
+               "EAC = { basis = \"fourier\", degree = 1, coefficients_urad = [0, 0.001, 0.001] }\n");
+  std::ofstream(path("model.toml")) << model;
+  std::ofstream(path("line.ngc"))
+      << "G21 G90 G54 G17\nG43.4 H1\nG0 X0 Y0 Z0 B0 C0\nG1 X320 C32 F1000\nG49\nM2\n";
+  const auto run = compensate("--tool-length H1=150 -o " + path("out.ngc"));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  std::istringstream lines(content(path("out.ngc")));
+  double x = 0.0, c = 0.0, largest_urad = 0.0;
+  bool feed = false;
+  for (std::string line; std::getline(lines, line);) {
+    double x_to = x, c_to = c;
+    std::istringstream words(line);
+    for (std::string word; !line.starts_with("(") && words >> word;) {
+      if (word == "G1") feed = true;
+      if (word[0] == 'X') x_to = std::stod(word.substr(1));
+      if (word[0] == 'C') c_to = std::stod(word.substr(1));
+    }
+    for (int i = 0; feed && i <= 500; ++i) {
+      const double meant = (x + i / 500.0 * (x_to - x)) / 10.0;
+      const double off_deg = c + i / 500.0 * (c_to - c) - meant;
+      largest_urad = std::max(largest_urad, std::abs(off_deg * std::numbers::pi / 180.0 * 1e6 +
+                                                     60.0 * std::cos(std::numbers::pi / 2.0 * meant)));
+    }
+    x = x_to;
+    c = c_to;
+  }
+  EXPECT_LE(largest_urad, 5.0 + 0.2) << "0.5 um at 100 mm, and half of 1e-5 deg";
+}
+
+/// Beyond its bounds an expression is refused; without readings what is not finite states the pose.
+TEST_F(ProgramsOfWaves, RefuseExpressionsWithoutBoundsOrValues) {
+  const auto tables = [this](const std::string& expression) {
+    write_effect("kind = \"custom\"\ntarget = \"EYX\"\namplitude_um = 1\nexpression = \"" + expression +
+                 "\"\n");
+    const auto run = run_program("tables " + path("model.toml") + " --at X=-10");
+    EXPECT_EQ(run.exit_code, 2);
+    return run.errors;
+  };
+  const auto nested = [](std::size_t depth) {
+    return std::string(depth, '(') + "x" + std::string(depth, ')');
+  };
+  EXPECT_THAT(tables(nested(20000)), HasSubstr("model.toml:5: effect \"custom\": the expression \"((("));
+  EXPECT_THAT(tables(nested(20000)), HasSubstr("it is longer than 4000 characters; write a shorter one"));
+  EXPECT_LT(tables(nested(20000)).size(), 1000U);
+  EXPECT_THAT(tables(nested(101)),
+              HasSubstr("nested more than 100 deep; write it with fewer, at character 101"));
+  EXPECT_THAT(tables("sqrt(-1 - x * x)"), HasSubstr("is not finite at the pose X"));
+  write_effect("kind = \"custom\"\ntarget = \"EYX\"\namplitude_um = 1\nexpression = \"" + nested(100) +
+               "\"\n");
+  EXPECT_EQ(run_program("tables " + path("model.toml") + " --at X=-10").exit_code, 0);
 }
 
 /// docs/guides/compensate-a-program.md shows a command and what it prints, line by line.

@@ -62,7 +62,7 @@ class EffectsInTables : public ::testing::Test {
     done("simulate " + study_ + " --compensation " + tables + " -o " + again);
     const Json compared = Json::parse(done("compare " + again + "/truth/campaign.toml nominal --json"));
     const double rms = compared.at("models").at(0).at("total").at("lengths_um").at("rms").get<double>();
-    return {made.at("error_left").at("tables").at("rms_um").get<double>(), std::sqrt(3.0) * rms};
+    return {made.at("error_left").at("expected_rms_um").get<double>(), std::sqrt(3.0) * rms};
   }
 
   std::string study_;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ namespace {
 
 using Json = nlohmann::json;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::run_program;
 
 const std::string kExercises = VOLCAL_SOURCE_DIR "/datasets/exercises/";
@@ -219,6 +221,125 @@ TEST_F(KnownErrors, ABudgetOfTolerancesIsOneCommand) {
   EXPECT_EQ(done("budget " + path("model.toml") + " --tolerances " + path("tolerances.toml")), done(command));
   refused("budget " + path("known.toml") + " --tolerances " + path("tolerances.toml"), "states errors",
           "machine file");
+}
+
+/// How often a text stands in another.
+int count_of(const std::string& wanted, const std::string& text) {
+  int count = 0;
+  for (auto at = text.find(wanted); at != std::string::npos; at = text.find(wanted, at + 1)) ++count;
+  return count;
+}
+
+/// metadata.csv without what error tables say of effects, as older versions wrote it.
+std::string without_effect_keys(const std::string& metadata) {
+  std::string kept;
+  std::istringstream lines(metadata);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("effects.")) kept += line + "\n";
+  }
+  return kept;
+}
+
+TEST_F(KnownErrors, TablesSayWhichToolAndConditionsTheyHoldFor) {
+  done("tables " + path("known.toml") + " --tool side_x --conditions T_air=23 -o " + path("tables"));
+  const std::string said = "these errors are those of tables for tool side_x, T_air 23 degC; of ",
+                    other_tool = "the tables were made for tool side_x: of tool short ";
+  const auto said_once = [&](const std::string& arguments) {
+    const std::string output = done(arguments);
+    EXPECT_EQ(count_of(said, output), 1) << arguments << "\n" << output;
+    return output;
+  };
+  EXPECT_THAT(said_once("tables " + path("tables") + " --at X=0 --tool side_x"), Not(HasSubstr(other_tool)));
+  EXPECT_THAT(said_once("tables " + path("tables") + " --at X=0 --tool short"), HasSubstr(other_tool));
+  EXPECT_THAT(said_once("tables " + path("tables") + " --at X=0 --conditions T_air=20"),
+              HasSubstr("the tables hold for T_air = 23 degC: T_air = 20 degC changes nothing in them"));
+  EXPECT_THAT(said_once("budget " + path("tables") + " --tool short"), HasSubstr(other_tool));
+  said_once("tables " + path("tables") + " --tool side_x -o " + path("again"));
+  said_once("tables " + path("again") + " --at X=0 --tool side_x");
+  said_once("simulate " + path("study.toml") + " --errors " + path("tables") + " -o " + path("campaign"));
+  const std::string campaign = " " + path("campaign/campaign.toml");
+  said_once("validate " + path("tables") + campaign);
+  said_once("compare" + campaign + " " + path("tables"));
+  write("program.ngc", "G21 G90 G94\nF1000\nG0 X0 Y0 Z0\nG1 X50\nM2\n");
+  EXPECT_THAT(said_once("compensate " + path("tables") + " " + path("program.ngc") + " -o " +
+                        path("out.ngc") + " --work-offset G54=X0,Y0,Z-100"),
+              HasSubstr(other_tool));
+  const Json json = Json::parse(done("budget " + path("tables") + " --tool short --json"));
+  EXPECT_EQ(json.at("of_tables_findings").at(0).at("code"), "errors.of-tables");
+  EXPECT_EQ(json.at("of_tables_findings").at(1).at("code"), "errors.tables-of-other-tool");
+}
+
+TEST_F(KnownErrors, TablesOfOlderMakeAreReadAsBefore) {
+  done("tables " + path("known.toml") + " --tool side_x --conditions T_air=23 -o " + path("tables"));
+  const std::string at = "tables " + path("tables") + " --at X=120,Y=40,Z=-110 --json";
+  const Json now = Json::parse(done(at)).at("volumetric_errors");
+  write("tables/metadata.csv", without_effect_keys(testing::content(path("tables/metadata.csv"))));
+  const Json before = Json::parse(done(at));
+  EXPECT_EQ(before.at("volumetric_errors"), now);
+  EXPECT_TRUE(before.at("of_tables").empty());
+}
+
+TEST_F(KnownErrors, EffectsAlongAPathAreSaidToBeInNoFigure) {
+  write("path.toml", "format = \"volcal-model-1\"\nmachine = \"" + testing::kDemoMachine +
+                         "\"\n[functions]\nEXX = { basis = \"legendre\", degree = 1, coefficients_um = [1.0, "
+                         "4.0] }\n[[effects]]\nkind = \"following-error\"\naxis = \"X\"\nby = "
+                         "\"feed\"\namplitude_ms = 0.3\n");
+  for (const std::string& command :
+       {"tables " + path("path.toml") + " --at X=100", "budget " + path("path.toml")}) {
+    const std::string output = done(command + " --conditions feed_mm_min=3000");
+    EXPECT_THAT(output, HasSubstr("was identified and is in none of these figures: it acts along a path"));
+    EXPECT_THAT(output, HasSubstr("! feed drives "));
+    EXPECT_THAT(output, Not(HasSubstr("no identified error depends on feed")));
+  }
+}
+
+TEST_F(KnownErrors, ConditionsWithoutACampaignAreAssumed) {
+  write("warm.toml", "format = \"volcal-model-1\"\nmachine = \"" + testing::kDemoMachine +
+                         "\"\n[[effects]]\nkind = \"thermal-drift\"\nsymbol = \"EXX\"\ntemperature = "
+                         "\"air\"\namplitude_um_per_K = 4.0\n");
+  EXPECT_THAT(done("tables " + path("warm.toml") + " --at X=100"),
+              HasSubstr("Stated for T_air 20 degC (assumed)\n"));
+  const Json json = Json::parse(done("tables " + path("warm.toml") + " --at X=100 --json"));
+  EXPECT_EQ(json.at("conditions").at("T_air_degC").at("origin"), "assumed");
+  done("tables " + path("warm.toml") + " -o " + path("tables"));
+  const std::string metadata = testing::content(path("tables/metadata.csv"));
+  EXPECT_THAT(metadata, HasSubstr("conditions.T_air_degC.is,assumed\n"));
+  EXPECT_THAT(metadata, HasSubstr("conditions.time_s.is,assumed\n"));
+  EXPECT_THAT(metadata, HasSubstr("reference_temperature_is,assumed\n"));
+  EXPECT_THAT(metadata, Not(HasSubstr("mean of the campaign")));
+}
+
+// With a dense covariance these would take gigabytes.
+TEST_F(KnownErrors, TablesOfManyPositionsAreRead) {
+  const std::string rigid = testing::content(path("known.toml"));
+  write("rigid.toml", rigid.substr(0, rigid.find("[[effects]]\nkind = \"axis-coupling\"")));
+  done("tables " + path("rigid.toml") + " --positions 2001 --grid 2 -o " + path("tables"));
+  const auto at = [&](const std::string& errors) {
+    return Json::parse(done("tables " + path(errors) + " --at X=120,Y=40,Z=-110 --tool side_x --json"))
+        .at("volumetric_errors")
+        .at(0)
+        .at("error_um");
+  };
+  const Json model = at("rigid.toml"), tables = at("tables");
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(tables.at(k).get<double>(), model.at(k).get<double>(), 1e-3);
+}
+
+TEST_F(KnownErrors, GridsHaveABound) {
+  refused("tables " + path("known.toml") + " --grid 301 -o " + path("tables"), "million points",
+          "ten million points are the most");
+}
+
+TEST_F(KnownErrors, ExportTakesResults) {
+  refused("export " + path("known.toml") + " --npz " + path("a.npz"), "export takes result folders",
+          "result.json");
+}
+
+TEST_F(KnownErrors, AnUnknownKeyOfAFunctionIsNamedBeforeTheNumberOfItsCoefficients) {
+  write("unknown.toml", "format = \"volcal-model-1\"\nmachine = \"" + testing::kDemoMachine +
+                            "\"\n[functions]\nEXX = { basis = \"legendre\", harmonics = 2, coefficients_um = "
+                            "[1.0, 2.0, 3.0, 4.0, 5.0, 6.0] }\n");
+  refused("budget " + path("unknown.toml"), "unknown key functions.EXX.harmonics", "keys here");
 }
 
 }  // namespace

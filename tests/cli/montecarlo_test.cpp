@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -135,6 +136,46 @@ TEST_F(MonteCarloCommand, WritesDistributionsOfEveryQuantity) {
 }
 
 /// One station and one tool do not see every error: as fit, exit 1 and the same words; nothing is written.
+/// The conditions that table values and the volume hold for, in the words of `volcal tables`.
+TEST_F(MonteCarloCommand, StatesTheConditions) {
+  std::ofstream(study_) << "format = \"volcal-study-1\"\nmachine = \"" << machine() << "\"\nseed = 5\n"
+                        << "[[temperatures]]\nchannel = \"air\"\nstart_degC = 20.0\ndrift_K_per_hour = 2.0\n"
+                        << "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [4, 4, 3]\n";
+  const testing::ProgramRun made = run_program("simulate " + study_ + " -o " + path("warm"));
+  ASSERT_EQ(made.exit_code, 0) << made.errors;
+  std::ofstream(model_, std::ios::app)
+      << "[[effects]]\nkind = \"thermal-drift\"\nsymbol = \"EXX\"\ntemperature = \"air\"\n";
+  const auto drawn = [&](const std::string& options, const std::string& output) {
+    return run_program("montecarlo " + path("warm/campaign.toml") + " -m " + model_ +
+                       " --noise white --path linear -n 2000 --refits 1 " + options + " -o " + path(output));
+  };
+  const testing::ProgramRun usual = drawn("", "usual"), stated = drawn("--conditions T_air=30", "stated");
+  ASSERT_EQ(usual.exit_code, 0) << usual.errors;
+  ASSERT_EQ(stated.exit_code, 0) << stated.errors;
+  EXPECT_THAT(usual.output, HasSubstr("(mean of the campaign)\n"));
+  EXPECT_THAT(stated.output, HasSubstr("Stated for T_air 30 degC (as stated)\n"));
+  EXPECT_THAT(stated.output, HasSubstr("! T_air = 30 degC is beyond the readings"));
+  EXPECT_THAT(content(path("stated/montecarlo.txt")), HasSubstr("Stated for T_air 30 degC (as stated)\n"));
+  const auto json = [&](const std::string& output) {
+    return nlohmann::json::parse(content(path(output + "/montecarlo.json")));
+  };
+  EXPECT_EQ(json("usual").at("conditions").at("T_air_degC").at("origin"), "mean of the campaign");
+  EXPECT_EQ(json("stated").at("conditions").at("T_air_degC").at("value"), 30.0);
+  const auto largest_u = [&](const std::string& output) {
+    double largest = 0.0;
+    const nlohmann::json document = json(output);
+    for (const auto& quantity : document.at("quantities")) {
+      if (quantity.at("kind") == "table" && quantity.at("name") == "EXX")
+        largest = std::max(largest, quantity.at("u_linear").get<double>());
+    }
+    return largest;
+  };
+  EXPECT_GT(largest_u("stated"), 2.0 * largest_u("usual"));
+  const testing::ProgramRun unknown = drawn("--conditions T_row=20", "unknown");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.errors, HasSubstr("T_row"));
+}
+
 TEST_F(MonteCarloCommand, SaysAsFitDoesWhatIsNotDetermined) {
   std::ofstream(study_, std::ios::app) << "stations = [{ name = \"P1\", position_mm = [-700, -500, -600] }]\n"
                                        << "runs = [{ station = \"P1\", tool = \"short\" }]\n";

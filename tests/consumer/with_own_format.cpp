@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "own_format.h"
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/identify/io/results/known_errors.h"
 
 int main(int count, char** arguments) {

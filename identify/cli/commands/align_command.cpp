@@ -9,6 +9,7 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/alignment_options.h"
 #include "volcal/identify/cli/provenance.h"
+#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/io/results/result_folder.h"
 #include "volcal/identify/report/report.h"
@@ -111,12 +112,14 @@ int run_align(const AlignArguments& arguments) {
                                    {"squareness_before", angles_json(squareness_of(before))},
                                    {"squareness", angles_json(squareness_of(aligned.result))}};
     add_findings("invisible", before.rank.invisible, json);
+    add_findings("of_tables", findings_of_tables(before), json);
     add_findings("contradicted", contradictions(before), json);
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}\n{}written to {}\n", aligned.result.alignment, angles_text(aligned, before),
                arguments.output);
-    fmt::print("{}{}", findings_text(before.rank.invisible), findings_text(contradictions(before)));
+    fmt::print("{}{}{}", findings_text(findings_of_tables(before)), findings_text(before.rank.invisible),
+               findings_text(contradictions(before)));
   }
   return before.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

@@ -10,6 +10,7 @@
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/design_stage.h"
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/identify/io/campaign/tolerance_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
@@ -67,13 +68,16 @@ int run_budget(const BudgetArguments& arguments) {
     nlohmann::ordered_json json = error_budget_json(budget);
     json["tool"] = tool.name;
     json["conditions"] = conditions_json(result, conditions);
+    add_findings("effects_in_no_figure", effects_in_no_figure(result), json);
+    add_findings("of_tables", findings_of_tables(result, {tool.name}), json);
     add_findings("invisible", result.rank.invisible, json);
     add_findings("contradicted", contradictions(result), json);
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}{}", conditions_text(result, conditions),
                error_budget_text(budget, tool.name, result.coverage_factor, arguments.verbose));
-    fmt::print("{}", findings_text(unmeasured_travel(result)));
+    fmt::print("{}{}", findings_text(unmeasured_travel(result)), findings_text(effects_in_no_figure(result)));
+    fmt::print("{}", findings_text(findings_of_tables(result, {tool.name})));
     fmt::print("{}{}", findings_text(result.rank.invisible), findings_text(contradictions(result)));
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;

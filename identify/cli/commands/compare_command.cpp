@@ -17,6 +17,7 @@
 #include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/criticism/screening.h"
 #include "volcal/identify/errors/alignment.h"
+#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
@@ -51,6 +52,7 @@ struct NamedModel {
   ModelSpec refittable;  ///< what --held-out fits
   bool can_be_fitted = true;
   std::optional<FitResult> result = {};  ///< that it was read from
+  std::vector<Finding> of_tables = {};   ///< findings_of_tables()
   std::optional<Campaign> aligned = {};  ///< the readings in the coordinate system of an aligned result
 
   const Campaign& readings(const Campaign& campaign) const { return aligned ? *aligned : campaign; }
@@ -64,7 +66,9 @@ NamedModel load_tables(const std::string& argument, const Campaign& campaign) {
     throw InputError({argument, 0}, "they belong to another machine than the campaign: " + difference,
                      "compare with tables of the same machine");
   }
-  return {argument, tables.identified, tables.identified, false};
+  NamedModel model{argument, tables.identified, tables.identified, false};
+  model.of_tables = findings_of_tables(tables, tools_of_setups(campaign));
+  return model;
 }
 
 /// A result, a model file, a folder of error tables, or the word "nominal".
@@ -86,7 +90,12 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
       throw InputError({argument, 0}, "it belongs to another machine than the campaign: " + difference,
                        "compare with a result of the same machine");
     }
-    return {argument,          model_with_measured_travel(result), refittable_model(result), true, result,
+    return {argument,
+            model_with_measured_travel(result),
+            refittable_model(result),
+            true,
+            result,
+            findings_of_tables(result, tools_of_setups(campaign)),
             std::move(aligned)};
   }
   NamedModel model{argument, read_model(argument, campaign.machine), {}, true};
@@ -133,6 +142,11 @@ std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vec
   }
   bar.finish();
   return judged;
+}
+
+void note_tables(const std::vector<NamedModel>& models, Campaign& campaign) {
+  for (const NamedModel& model : models)
+    campaign.notes.insert(campaign.notes.end(), model.of_tables.begin(), model.of_tables.end());
 }
 
 /// Each axis and each curve or surface once.
@@ -186,6 +200,7 @@ int run_compare(const CompareArguments& arguments) {
   }
   note_missing_rotary_errors(named, campaign);
   note_held_errors(named, campaign);
+  note_tables(named, campaign);
   std::vector<HeldOutModel> heldout;
   if (arguments.heldout) heldout = judge_heldout(campaign, named, arguments, comparison);
   const std::string json = comparison_json(campaign, models, heldout);

@@ -13,6 +13,7 @@
 #include "volcal/identify/cli/options/program_setup.h"
 #include "volcal/identify/errors/acting_conditions.h"
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/results/known_errors.h"
@@ -107,6 +108,12 @@ RewrittenProgram rewrite(const FitResult& result, const CompensateArguments& arg
   return done;
 }
 
+/// That is corrected while no tool length is active.
+std::string tool_without_length(const Machine& machine, const CompensateArguments& arguments) {
+  if (!arguments.tool.empty() || machine.tools.empty()) return arguments.tool;
+  return machine.tools.front().name;
+}
+
 void print_text(const RewrittenProgram& done, const FitResult& result, const CompensateArguments& arguments,
                 const Conditions& conditions) {
   fmt::print("{}", program_summary_text(done.summary));
@@ -114,6 +121,8 @@ void print_text(const RewrittenProgram& done, const FitResult& result, const Com
   fmt::print("{}", conditions_text(result, conditions));
   fmt::print("{}", findings_text(errors_in_no_table(result)));
   fmt::print("{}{}", findings_text(result.rank.invisible), findings_text(contradictions(result)));
+  fmt::print("{}",
+             findings_text(findings_of_tables(result, {tool_without_length(result.machine, arguments)})));
   if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
 }
 
@@ -181,6 +190,8 @@ int run_tcp(const FitResult& result, const CompensateArguments& arguments, const
     add_findings("effects_not_compensated", left_by_tcp(result), json);
     json["conditions"] = conditions_json(result, conditions);
     add_findings("invisible", result.rank.invisible, json);
+    add_findings("of_tables", findings_of_tables(result, {tool_without_length(result.machine, arguments)}),
+                 json);
     add_findings("contradicted", contradictions(result), json);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));
@@ -188,6 +199,8 @@ int run_tcp(const FitResult& result, const CompensateArguments& arguments, const
     fmt::print("{}{}{}{}{}", tcp_summary_text(summary, arguments.check), conditions_text(result, conditions),
                findings_text(left_by_tcp(result)), findings_text(result.rank.invisible),
                findings_text(contradictions(result)));
+    fmt::print("{}",
+               findings_text(findings_of_tables(result, {tool_without_length(result.machine, arguments)})));
     if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
@@ -209,6 +222,8 @@ int run_compensate(const CompensateArguments& arguments) {
     add_findings("effects_not_compensated", errors_in_no_table(result), json);
     json["conditions"] = conditions_json(result, conditions);
     add_findings("invisible", result.rank.invisible, json);
+    add_findings("of_tables", findings_of_tables(result, {tool_without_length(result.machine, arguments)}),
+                 json);
     add_findings("contradicted", contradictions(result), json);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));

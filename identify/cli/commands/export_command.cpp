@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -41,6 +42,15 @@ ErrorTableOptions export_table_options(const FitResult& result, const ExportArgu
   return options;
 }
 
+/// Throws InputError for a model or a table, which are read as errors elsewhere.
+void require_result(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored) || is_result(path)) return;
+  throw InputError({path, 0}, "it is no result: export takes result folders",
+                   "give the folder that volcal fit wrote, or its result.json; errors that are stated in a "
+                   "model or in tables have no covariance");
+}
+
 int run_export(const ExportArguments& arguments) {
   if (arguments.gtc.empty() && arguments.npz.empty())
     throw InputError({}, "no file is given", "give --gtc FILE, --npz FILE, or both");
@@ -49,6 +59,7 @@ int run_export(const ExportArguments& arguments) {
     require_no_input(output, read, "name another file");
   if (arguments.gtc == arguments.npz)
     throw InputError({}, "--gtc and --npz name one file", "give each a file of its own");
+  require_result(arguments.result);
   const FitResult result = read_result(arguments.result);
   if (arguments.conditions.no_extrapolation)
     require_within_readings(result, conditions_of(result, arguments.conditions));

@@ -12,6 +12,7 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/draw_ranks.h"
 #include "volcal/identify/cli/interrupt_watch.h"
+#include "volcal/identify/cli/options/conditions_options.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
@@ -23,6 +24,7 @@
 #include "volcal/identify/io/results/montecarlo_writer.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/report/report.h"
+#include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/montecarlo_text.h"
 #include "volcal/identify/report/text/text_tables.h"
@@ -46,6 +48,7 @@ struct MonteCarloArguments {
   std::string noise = "auto";
   std::vector<std::string> disturbances;
   MonteCarloOptions options;
+  ConditionsArguments conditions;
   double checkpoint_s = 10.0;
   double minutes = 10.0;
   bool resume = false;
@@ -260,13 +263,17 @@ int run_montecarlo(MonteCarloArguments arguments) {
   require_output_folder(arguments.output, {arguments.campaign, arguments.model});
   if (!arguments.resume) require_no_checkpoint(checkpoint_path(arguments));
   const Campaign campaign = read_campaign(arguments.campaign);
-  const MonteCarloOptions options = study_options(arguments, campaign);
+  MonteCarloOptions options = study_options(arguments, campaign);
   ProgressBar bar("montecarlo");
   const FitResult fit_result = fitted(arguments, campaign, bar);
   if (fit_result.status == FitStatus::RankDeficient) {
     bar.finish();
     return tell_undetermined(arguments, fit_result, campaign.notes);
   }
+  if (!arguments.conditions.given.empty())
+    options.conditions = conditions_of(fit_result, arguments.conditions);
+  if (arguments.conditions.no_extrapolation)
+    require_within_readings(fit_result, conditions_of(fit_result, arguments.conditions));
   const auto [result, end] = drawn(arguments, campaign, fit_result, options, bar);
   if (end == End::Interrupted) return tell_interrupted(arguments, result);
   const bool complete = fit_result.status != FitStatus::NotConverged && result.not_converged == 0 &&
@@ -331,6 +338,7 @@ std::function<int()> define_montecarlo(CLI::App& app) {
          "KIND:TARGET=U or KIND:TARGET=+-A: an effect of the catalogue that acts on the readings and "
          "that the fit knows nothing of, of standard uncertainty U or within limits A; may be repeated")
       ->allow_extra_args(false);
+  add_conditions_options(app, arguments->conditions);
   app.add_option("--outliers", arguments->outliers, "of the fit: list or remove flagged readings")
       ->check(one_of(kOutlierWords));
   app.add_option("--noise", arguments->noise, "of the fit: auto or white")->check(one_of(kNoiseWords));
@@ -355,6 +363,7 @@ const Command& montecarlo_command() {
       "  volcal montecarlo campaign.toml -o uncertainty\n"
       "  volcal montecarlo campaign.toml --model model.toml --path chord -n 100000 --seed 7 -o uncertainty\n"
       "  volcal montecarlo campaign.toml -n 100000 --functions fixed -o scatter\n"
+      "  volcal montecarlo campaign.toml --conditions T_air=24,time_s=3600 -o warm\n"
       "  volcal montecarlo campaign.toml --disturb \"station-drift:station P1=0.5\" -o drifting\n"
       "  volcal montecarlo campaign.toml -o uncertainty --resume\n"
       "  mpirun -n 4 volcal montecarlo campaign.toml -n 1000000 --threads 8 -o uncertainty\n",

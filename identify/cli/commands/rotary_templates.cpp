@@ -115,8 +115,10 @@ std::string listed(const std::vector<AxisName>& axes) {
 /// positions = { A = 9, C = 12 }; one of an axis that stands.
 std::string positions_table(const Structure& structure, const std::vector<AxisName>& standing = {}) {
   std::string inside;
+  const bool one_turns = rotary_axes(structure).size() == standing.size() + 1;
+  const int of_c = one_turns ? 24 : 12, of_others = one_turns ? 17 : 9;  // of two axes every combination
   for (const AxisName axis : rotary_axes(structure)) {
-    const int count = contains(standing, axis) ? 1 : axis == AxisName::C ? 12 : 9;
+    const int count = contains(standing, axis) ? 1 : axis == AxisName::C ? of_c : of_others;
     inside += fmt::format("{}{} = {}", inside.empty() ? "" : ", ", letter_of(axis), count);
   }
   return "{ " + inside + " }";

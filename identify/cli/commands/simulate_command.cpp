@@ -9,8 +9,10 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/units.h"
 #include "volcal/studies/files/simulation_writer.h"
 #include "volcal/studies/files/study_reader.h"
@@ -69,19 +71,21 @@ int run_simulate(const SimulateArguments& arguments) {
   write_simulation(simulated, folder);
   folder.commit();
   if (arguments.json) {
-    const nlohmann::ordered_json json = {{"folder", arguments.output},
-                                         {"seed", study.seed},
-                                         {"setups", simulated.campaign.setups.size()},
-                                         {"readings", simulated.campaign.reading_count()},
-                                         {"poses_left_out", left_out_json(simulated)},
-                                         {"known_errors", study.truth.errors_file},
-                                         {"active_compensations", study.compensation.description}};
+    nlohmann::ordered_json json = {{"folder", arguments.output},
+                                   {"seed", study.seed},
+                                   {"setups", simulated.campaign.setups.size()},
+                                   {"readings", simulated.campaign.reading_count()},
+                                   {"poses_left_out", left_out_json(simulated)},
+                                   {"known_errors", study.truth.errors_file},
+                                   {"active_compensations", study.compensation.description}};
+    add_findings("of_tables", study.truth.notes, json);
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{} readings in {} setups (seed {}) written to {}\n", simulated.campaign.reading_count(),
                simulated.campaign.setups.size(), study.seed, arguments.output);
     print_left_out(simulated);
     if (!study.truth.errors_file.empty()) fmt::print("errors as stated in {}\n", study.truth.errors_file);
+    fmt::print("{}", findings_text(study.truth.notes));
     if (!study.compensation.description.empty())
       fmt::print("active while it was measured: {}\n", study.compensation.description);
     fmt::print("next: volcal fit {0}/campaign.toml --model {0}/model.toml -o result\n", arguments.output);

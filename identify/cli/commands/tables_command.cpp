@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,8 +15,9 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/picture.h"
 #include "volcal/identify/cli/provenance.h"
-#include "volcal/identify/compensation/made_tables.h"
+#include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/report/text/compensation_text.h"
@@ -123,6 +126,17 @@ std::vector<VolumetricError> errors_at_points(const FitResult& result, const Tab
   return errors;
 }
 
+/// That these errors are used for: of tables, of --at where one is named.
+std::vector<std::string> tools_asked_for(const FitResult& result, const TablesArguments& arguments,
+                                         const std::optional<MadeTables>& made) {
+  return {made ? tool_of(result.machine, made->options).name : arguments.tool};
+}
+
+/// Of the points of --at, where no tables say it.
+std::vector<Finding> left_out_at_points(const FitResult& result, const std::optional<MadeTables>& made) {
+  return made ? std::vector<Finding>{} : effects_in_no_figure(result);
+}
+
 bool makes_tables(const TablesArguments& arguments) { return !arguments.output.empty() || arguments.dry_run; }
 
 void require_something_to_do(const TablesArguments& arguments) {
@@ -223,6 +237,14 @@ std::string step_text(const MadeTables& made) {
   return text;
 }
 
+/// Positions that are further apart than the errors change can add to them.
+bool leave_more_than_none(const MadeTables& made) {
+  constexpr double kNotable = 0.05e-6;  // m
+  const bool linear = made.check.exported.rms > made.check.before.rms + kNotable;
+  return linear ||
+         (made.rotary_check && made.rotary_check->exported.rms > made.rotary_check->before.rms + kNotable);
+}
+
 void print_tables(const MadeTables& made, const TablesArguments& arguments, const FitResult& result) {
   const Machine& machine = result.machine;
   fmt::print("{} {}, tool {}{}\n", made.format->name, made.options.type.name(),
@@ -230,6 +252,7 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
   fmt::print("{}", conditions_text(result, *made.options.conditions));
   fmt::print("{}", volume_check_text(made.check, made.options.type));
   if (made.rotary_check) fmt::print("{}", rotary_check_text(*made.rotary_check, made.options.type));
+  if (made.all_axes) fmt::print("{}", all_axes_text(*made.all_axes));
   fmt::print("Verified: {}.\n", made.format->verified);
   if (made.tolerance > 0.0 && !made.step.reached) {
     const bool limited = made.format->limits.points_per_table > 0 || made.format->limits.resolution > 1e-10;
@@ -239,6 +262,10 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
                limited ? limits_text(made.format->limits)
                        : std::string("give --step for a finer table, or --tolerance for a coarser one"));
   }
+  if (leave_more_than_none(made))
+    fmt::print(
+        "! the machine errs more with these tables than without: do not load them; take a finer --step, "
+        "--positions or --rotary-step, a format that holds more positions, or fewer types\n");
   if (!arguments.superimpose.empty())
     fmt::print("They replace {} and correct what it corrected too; before = with it.\n",
                arguments.superimpose);
@@ -258,6 +285,8 @@ nlohmann::ordered_json tables_json(const MadeTables& made, const TablesArguments
                                  {"error_left", volume_check_json(made.check)},
                                  {"verified", made.format->verified}};
   if (made.rotary_check) json["rotary_error_left"] = rotary_check_json(*made.rotary_check);
+  if (made.all_axes) json["all_axes_error_left"] = all_axes_json(*made.all_axes);
+  json["more_than_without"] = leave_more_than_none(made);
   add_findings("effects_in_no_table", made.effects_left_out, json);
   if (!arguments.dry_run) json["folder"] = arguments.output;
   if (!arguments.certificate.campaign.empty()) json["certificate"] = kCertificatePage;
@@ -289,11 +318,31 @@ FitResult aligned_result(const TablesArguments& arguments) {
   return align_result(result, alignment_of(result, arguments.alignment)).result;
 }
 
+/// About the size of a row of a grid file.
+constexpr double kBytesOfGridRow = 150.0;
+constexpr double kMostGridPoints = 1e7;
+
+/// Throws InputError for a grid of more points than a table of it is read for.
+void require_possible_grid(const Machine& machine, int per_axis) {
+  const auto axes = static_cast<double>(
+      std::ranges::count_if(kLinearAxes, [&](AxisName axis) { return machine.has_axis(axis); }));
+  const auto tools = static_cast<double>(machine.tools.size());
+  const double points = tools * std::pow(per_axis, axes);
+  if (points <= kMostGridPoints) return;
+  throw InputError({},
+                   fmt::format("--grid {} makes {:.3g} million points of {} tools, files of {:.2g} GB",
+                               per_axis, points * 1e-6, tools, points * kBytesOfGridRow * 1e-9),
+                   fmt::format("give at most {}: ten million points are the most that is written",
+                               std::floor(std::pow(kMostGridPoints / tools, 1.0 / axes))));
+}
+
 int run_tables(const TablesArguments& arguments) {
   if (arguments.list) return list_formats(arguments.json);
   require_something_to_do(arguments);
   if (!arguments.picture.empty()) require_picture_of_tables(arguments);
   const FitResult result = aligned_result(arguments);
+  if (makes_tables(arguments) && arguments.format == "csv")
+    require_possible_grid(result.machine, arguments.grid);
   if (arguments.conditions.no_extrapolation) {
     const Conditions conditions = conditions_of(result, arguments.conditions);
     require_conditions_of_readings(result, conditions);
@@ -315,6 +364,8 @@ int run_tables(const TablesArguments& arguments) {
     json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
     add_findings("beyond_readings", unmeasured_travel(result), json);
     if (!errors.empty()) json["volumetric_errors"] = volumetric_json(result, errors);
+    add_findings("effects_in_no_figure", left_out_at_points(result, made), json);
+    add_findings("of_tables", findings_of_tables(result, tools_asked_for(result, arguments, made)), json);
     if (made && !errors.empty())
       json["corrections"] = corrections_json(result.machine, made->read_back, points_of(result, arguments));
     fmt::print("{}\n", json_text(json, 2));
@@ -325,6 +376,8 @@ int run_tables(const TablesArguments& arguments) {
       fmt::print("{}", corrections_text(result.machine, made->read_back, points_of(result, arguments)));
       print_tables(*made, arguments, result);
     }
+    fmt::print("{}{}", findings_text(left_out_at_points(result, made)),
+               findings_text(findings_of_tables(result, tools_asked_for(result, arguments, made))));
     fmt::print("{}{}", findings_text(result.rank.invisible), findings_text(contradictions(result)));
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;

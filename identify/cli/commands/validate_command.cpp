@@ -13,6 +13,7 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/errors/alignment.h"
+#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
@@ -111,6 +112,8 @@ int run_validate(const ValidateArguments& arguments) {
     campaign.notes.push_back(std::move(missing));
   }
   std::ranges::move(held_beyond_measured(campaign, model_with_measured_travel(result)),
+                    std::back_inserter(campaign.notes));
+  std::ranges::move(findings_of_tables(result, tools_of_setups(campaign)),
                     std::back_inserter(campaign.notes));
   const Validation validation = validate(campaign, result, arguments.threads);
   auto figures = validation_json(validation.figures, fitted);

@@ -6,9 +6,11 @@
 namespace volcal::cli {
 
 void add_conditions_options(CLI::App& app, ConditionsArguments& arguments) {
-  app.add_option("--conditions", arguments.given,
-                 "T_<channel>=23.3,time_s=3600,feed_mm_min=1000: conditions that the error is stated for; "
-                 "default: 20 degC where the model knows the expansion, otherwise the campaign's mean")
+  app.add_option(
+         "--conditions", arguments.given,
+         "T_<channel>=23.3,time_s=3600,feed_mm_min=1000: conditions that the error is stated for; "
+         "default: 20 degC where the model knows the expansion, otherwise the campaign's mean, or what "
+         "errors without a campaign assume")
       ->delimiter(',');
   app.add_flag("--no-extrapolation", arguments.no_extrapolation,
                "refuse to state errors beyond the measured positions and conditions; otherwise the last "

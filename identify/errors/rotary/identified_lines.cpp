@@ -43,7 +43,7 @@ IdentifiedLine line_at_zero_of(const FitResult& result, const std::vector<const 
   IdentifiedLine line;
   line.axis = axis;
   line.value = {value.head<3>(), value.tail<3>()};
-  const Eigen::MatrixXd covariance = result.covariance(places, places);
+  const Eigen::MatrixXd covariance = covariance_of(result, places);
   line.covariance = rows * covariance * rows.transpose();
   for (Eigen::Index k = 0; k < rows.rows(); ++k)
     line.by_convention[static_cast<std::size_t>(k)] = rows.row(k).isZero(0.0);

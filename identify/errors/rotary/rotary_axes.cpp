@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "volcal/identify/errors/machine_effects.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/kinematics/rotary_datum.h"
 
@@ -16,6 +17,17 @@ std::vector<AxisName> identified_rotary_axes(const FitResult& result) {
   for (const FunctionGroup& group : result.layout.groups) add(group.axis);
   for (const ParameterBlock& block : result.layout.blocks) {
     if (block.location) add(block.location->axis);
+  }
+  if (!result.machine.tools.empty()) {
+    const MachineEffects effects(result, result.machine.tools.front(), default_conditions(result));
+    for (const EffectColumn& column : effects.columns()) {
+      if (column.target.kind == TargetKind::Motion) add(column.target.symbol.axis);
+    }
+    for (std::size_t effect = 0; effect < effects.effect_count(); ++effect) {
+      for (const AxisName axis : kAllAxes) {
+        if (effects.reach(effect).position[index_of(axis)]) add(axis);
+      }
+    }
   }
   std::ranges::sort(axes);
   return axes;

@@ -9,7 +9,8 @@
 
 namespace volcal {
 
-/// Rotary axes of which functions or location errors were identified, A B C.
+/// Rotary axes of which functions or location errors were identified, or an effect that acts on them or
+/// depends on their position, A B C.
 std::vector<AxisName> identified_rotary_axes(const FitResult& result);
 
 /// Throws InputError where a rotary axis stands away from 0 whose errors were not identified.

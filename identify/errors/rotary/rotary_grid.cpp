@@ -148,7 +148,7 @@ class SideTwists {
       if (!rows.col(c).isZero(0.0)) used.push_back(c);
     }
     const PoseErrorRows own = rows(Eigen::all, used);
-    const Eigen::MatrixXd covariance = result_.covariance(used, used);
+    const Eigen::MatrixXd covariance = covariance_of(result_, used);
     return (own * covariance).cwiseProduct(own).rowwise().sum();
   }
 

@@ -77,7 +77,7 @@ class RotaryMapMaker {
         point_w_(point_w),
         field_(result, tool, conditions),
         places_(rotary_parameters(result, field_)),
-        covariance_(result.covariance(places_, places_)) {}
+        covariance_(covariance_of(result, places_)) {}
 
   AxisPosition pose(const AxisPosition& rotary) const {
     return followed(chain_, machine_, tool_, point_w_, rotary);

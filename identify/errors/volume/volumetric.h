@@ -2,6 +2,7 @@
 /// Sizes of a set of volumetric errors: vectors actual minus nominal of the functional point, m.
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -22,5 +23,9 @@ VolumetricFigures volumetric_figures(std::span<const Eigen::Vector3d> errors);
 /// (points on one line) is left at zero.
 std::vector<Eigen::Vector3d> without_rigid_motion(std::span<const Eigen::Vector3d> points,
                                                   std::span<const Eigen::Vector3d> errors);
+/// The motion is that of the first `fitted` points, and is taken from all.
+std::vector<Eigen::Vector3d> without_rigid_motion(std::span<const Eigen::Vector3d> points,
+                                                  std::span<const Eigen::Vector3d> errors,
+                                                  std::size_t fitted);
 
 }  // namespace volcal

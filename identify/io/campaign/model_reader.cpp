@@ -213,6 +213,8 @@ class ModelReader {
     if (kind.uses_knots && spec.knots == KnotChoice::Automatic) {
       table.fail(key, name + " needs fixed knots", "add knots_mm (knots_deg), or knots = INTERVALS");
     }
+    const bool may_be_smoothed = table.has("smoothed");
+    if (!may_be_smoothed) table.reject_unknown();  // a key without effect may be why the number is another
     if (spec.knots == KnotChoice::IntervalCount) spec.breakpoints = uniform_breakpoints(axis, spec.intervals);
     const std::size_t expected = basis_size(table, axis, kind, spec);
     if (spec.coefficients.size() != expected) {

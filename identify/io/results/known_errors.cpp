@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "volcal/identify/compensation/csv_tables.h"
+#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/results/result_folder.h"
@@ -138,7 +139,10 @@ FitResult result_of_tables(const std::filesystem::path& folder) {
     add_reversal(symbol, rows, metadata.machine.axis(symbol.axis).home, model);
   }
   model.measured = measured.ranges();
-  return stated_result(metadata.machine, model);
+  model.conditions = metadata.conditions;
+  FitResult result = stated_result(metadata.machine, model);
+  add_finding_of_tables(metadata.made_for, result);
+  return result;
 }
 
 FitResult result_of_model(const std::string& path, const SourcePlace& named_at) {

@@ -10,7 +10,8 @@ namespace volcal {
 
 /// A result of `volcal fit`; a model.toml with values (stated_errors.h); or a folder of `volcal tables
 /// --format csv` (error_tables.csv and metadata.csv), the tables linear between their rows, with what differs
-/// between the directions of approach as a reversal and its change along the travel. Throws InputError, also
+/// between the directions of approach as a reversal and its change along the travel, for their tool and their
+/// conditions alone (findings_of_tables(), errors_of_tables.h). Throws InputError, also
 /// for tables whose directions differ otherwise and for a model that states no value.
 FitResult read_known_errors(const std::string& path, const SourcePlace& named_at = {});
 

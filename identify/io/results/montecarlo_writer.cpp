@@ -66,6 +66,18 @@ MonteCarloJson check_json(const PathCheck& check) {
 
 }  // namespace
 
+namespace {
+
+/// Of table values and the volume.
+MonteCarloJson stated_conditions_json(const MonteCarloResult& result) {
+  MonteCarloJson json = MonteCarloJson::object();
+  for (const StatedCondition& condition : result.conditions)
+    json[condition.name()] = {{"value", finite(condition.value)}, {"origin", condition.origin}};
+  return json;
+}
+
+}  // namespace
+
 std::string montecarlo_json(const MonteCarloResult& result) {
   MonteCarloJson json = {{"format", kMonteCarloFormat},
                          {"path", std::string(to_string(result.path))},
@@ -77,6 +89,7 @@ std::string montecarlo_json(const MonteCarloResult& result) {
                          {"adaptive", result.adaptive},
                          {"settled", result.settled},
                          {"coverage", kCoverage},
+                         {"conditions", stated_conditions_json(result)},
                          {"refitted", result.refitted},
                          {"not_converged", result.not_converged},
                          {"against_refits",
@@ -92,6 +105,7 @@ std::string montecarlo_json(const MonteCarloResult& result) {
     for (const double u : result.budget.u.row(static_cast<Eigen::Index>(i)))
       of_quantity.push_back(finite(u / result.quantities[i].quantity.si_per_unit));
   }
+  add_findings("on_conditions", result.condition_findings, json);
   add_findings("contradicted", result.contradicted, json);
   add_notes(result.notes, json);
   return json_text(json, 1) + "\n";

@@ -124,12 +124,22 @@ Json locations_json(const FitResult& result) {
   return all;
 }
 
+constexpr std::string_view kOfTables = "tables", kAssumed = "assumed";
+
+/// "origin" where it is not a campaign.
 Json range_json(const RecordedRange& range) {
-  return {{"min", number(range.min)}, {"mean", number(range.mean)}, {"max", number(range.max)}};
+  Json json = {{"min", number(range.min)}, {"mean", number(range.mean)}, {"max", number(range.max)}};
+  if (range.origin != ConditionOrigin::Campaign)
+    json["origin"] = range.origin == ConditionOrigin::Tables ? kOfTables : kAssumed;
+  return json;
 }
 
 RecordedRange range_from(const Json& json) {
-  return {number(json.at("min")), number(json.at("mean")), number(json.at("max"))};
+  const std::string origin = json.value("origin", std::string());
+  return {number(json.at("min")), number(json.at("mean")), number(json.at("max")),
+          origin == kOfTables  ? ConditionOrigin::Tables
+          : origin == kAssumed ? ConditionOrigin::Assumed
+                               : ConditionOrigin::Campaign};
 }
 
 Json conditions_json(const RecordedConditions& conditions) {
@@ -337,6 +347,16 @@ FitResult result_from(const Json& json) {
 
 }  // namespace
 
+namespace {
+
+/// Files have a row per parameter, of stated errors too.
+Eigen::MatrixXd written_covariance(const FitResult& result) {
+  if (result.covariance.size() > 0) return result.covariance;
+  return Eigen::MatrixXd::Zero(result.parameters.size(), result.parameters.size());
+}
+
+}  // namespace
+
 std::string result_json(const FitResult& result) {
   Json json = head_json(result);
   json["timings"] = timings_json(result);
@@ -346,7 +366,7 @@ std::string result_json(const FitResult& result) {
   json["parameters"] = json_parts::vector(result.parameters);
   std::string text = json_text(json, 1);
   text.replace(text.size() - 2, 2,
-               ",\n \"covariance\": " + json_parts::covariance_text(result.covariance) + "\n}\n");
+               ",\n \"covariance\": " + json_parts::covariance_text(written_covariance(result)) + "\n}\n");
   return text;
 }
 

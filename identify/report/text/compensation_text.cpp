@@ -122,6 +122,20 @@ std::string rotary_check_text(const RotaryCheck& check, const CompensationType& 
   return table.text();
 }
 
+std::string all_axes_text(const AllAxesCheck& check) {
+  TextTable table({{"", Align::Left}, {"RMS [um]"}, {"max [um]"}},
+                  fmt::format("Errors of all axes left at {} poses of all axes", kAllAxesPoses));
+  table.add_row(left_figures("before", check.before));
+  table.add_row(left_figures("tables read back", check.exported));
+  return table.text();
+}
+
+nlohmann::ordered_json all_axes_json(const AllAxesCheck& check) {
+  return {{"before", left_json(check.before)},
+          {"tables", left_json(check.exported)},
+          {"levers_of_tilted_head", left_json(check.levers)}};
+}
+
 nlohmann::ordered_json rotary_check_json(const RotaryCheck& check) {
   nlohmann::ordered_json json;
   for (const auto& [name, left] : {std::pair{"before", &check.before}, std::pair{"ideal", &check.ideal},

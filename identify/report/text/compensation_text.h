@@ -4,14 +4,18 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "volcal/identify/compensation/rotary_check.h"
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/compensation/checks/all_axes_check.h"
+#include "volcal/identify/compensation/checks/rotary_check.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 
 namespace volcal {
 
 /// Of the errors of rotary axes, the tool point and the direction of the tool's axis.
 std::string rotary_check_text(const RotaryCheck& check, const CompensationType& type);
 nlohmann::ordered_json rotary_check_json(const RotaryCheck& check);
+
+std::string all_axes_text(const AllAxesCheck& check);
+nlohmann::ordered_json all_axes_json(const AllAxesCheck& check);
 
 /// RMS and largest error before, with the ideal compensation and with the tables, and what is to be expected
 /// of the machine with the uncertainty of the identified errors; then per type.

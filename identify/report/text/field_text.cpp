@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <vector>
 
 #include "volcal/identify/errors/acting_conditions.h"
 #include "volcal/identify/errors/error_tables.h"
@@ -15,32 +15,34 @@
 
 namespace volcal {
 
-std::string conditions_text(const FitResult& result, const Conditions& conditions) {
-  const std::set<Variable> acting = conditions_that_act(result, conditions);
-  std::string text, without_effect;
-  for (const StatedCondition& condition : list_conditions(result, conditions)) {
-    if (!acting.contains(condition.variable)) {
-      if (condition.origin == kAsStated)
-        without_effect +=
-            "! no identified error depends on " + condition.variable.name() + ": it changes nothing\n";
-      continue;
-    }
-    text += fmt::format("{}{} {:.6g} {} ({})", text.empty() ? "" : ", ", condition.variable.name(),
+std::string stated_for_text(std::span<const StatedCondition> conditions) {
+  std::string text;
+  for (const StatedCondition& condition : conditions)
+    text += fmt::format("{}{} {:.6g} {} ({})", text.empty() ? "Stated for " : ", ", condition.variable.name(),
                         condition.value, unit_text(condition.variable.unit().suffix), condition.origin);
-  }
-  return (text.empty() ? text : "Stated for " + text + "\n") + without_effect +
+  return text.empty() ? text : text + "\n";
+}
+
+std::string conditions_text(const FitResult& result, const Conditions& conditions) {
+  std::vector<StatedCondition> stated = list_conditions(result, conditions);
+  std::erase_if(stated, [acting = conditions_that_act(result, conditions)](const StatedCondition& condition) {
+    return !acting.contains(condition.variable);
+  });
+  return stated_for_text(stated) + findings_text(conditions_in_vain(result, conditions)) +
          findings_text(conditions_beyond_readings(result, conditions));
 }
 
 nlohmann::ordered_json conditions_json(const FitResult& result, const Conditions& conditions) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  std::set<std::string> beyond;
-  for (const Finding& finding : conditions_beyond_readings(result, conditions))
-    beyond.insert(finding.text("condition"));
-  for (const StatedCondition& condition : list_conditions(result, conditions)) {
+  for (const StatedCondition& condition : list_conditions(result, conditions))
     json[condition.name()] = {{"value", condition.value}, {"origin", condition.origin}};
-    if (beyond.contains(condition.variable.name())) json[condition.name()]["beyond_readings"] = true;
-  }
+  const auto named = [&](const Finding& finding) -> nlohmann::ordered_json& {
+    return json[Variable::parse(finding.text("condition")).value().column()];
+  };
+  for (const Finding& finding : conditions_beyond_readings(result, conditions))
+    named(finding)["beyond_readings"] = true;
+  for (const Finding& finding : conditions_in_vain(result, conditions))
+    named(finding)["changes_nothing"] = sentence(finding);
   return json;
 }
 

@@ -2,14 +2,17 @@
 /// Where and for what the error of a result is stated: conditions, measured positions.
 
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 
 #include "volcal/identify/errors/error_field.h"
 
 namespace volcal {
 
-/// One line, "Stated for T_column 23.34 degC (mean of the campaign), ..."; empty where the result's errors
-/// depend on no condition; below it what the user stated in vain or beyond the readings.
+/// One line, "Stated for T_column 23.34 degC (mean of the campaign), ..."; empty without conditions.
+std::string stated_for_text(std::span<const StatedCondition> conditions);
+/// Of a result; empty where its errors depend on no condition; below it what the user stated in vain or
+/// beyond the readings.
 std::string conditions_text(const FitResult& result, const Conditions& conditions);
 nlohmann::ordered_json conditions_json(const FitResult& result, const Conditions& conditions);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "volcal/identify/report/text/budget_text.h"
+#include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/fit_summary.h"
 #include "volcal/identify/report/text/text_tables.h"
@@ -161,7 +162,8 @@ std::string verdict_text(const MonteCarloResult& result) {
 std::string montecarlo_text(const MonteCarloResult& result) {
   std::string text = study_head(result);
   if (result.check.linear.draws > 0) text += "\n" + refit_table(result.check);
-  return text + "\n" + quantity_table(result) + "\n" + verdict_text(result) + "\n" + budget_text(result) +
+  text += "\n" + stated_for_text(result.conditions) + findings_text(result.condition_findings);
+  return text + quantity_table(result) + "\n" + verdict_text(result) + "\n" + budget_text(result) +
          findings_text(result.contradicted) + findings_text(result.notes);
 }
 

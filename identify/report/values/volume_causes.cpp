@@ -46,6 +46,7 @@ FitResult extended_result(const FitResult& given, std::span<const EffectFinding>
   result.conditions = given.conditions;
   result.reference_temperature_degC = given.reference_temperature_degC;
   result.temperature_is_campaign_mean = given.temperature_is_campaign_mean;
+  result.covariance = Eigen::MatrixXd::Zero(result.layout.size, result.layout.size);
   const auto pairs = shared(given.layout, result.layout);
   for (const auto& [from, to] : pairs) {
     for (const auto& [from2, to2] : pairs) result.covariance(to, to2) = given.covariance(from, from2);

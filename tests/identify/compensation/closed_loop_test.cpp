@@ -14,7 +14,7 @@
 #include "tests/support/identified_machines.h"
 #include "tests/support/long_tests.h"
 #include "tests/support/table_samples.h"
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/sim/machine/random_truth.h"
@@ -210,7 +210,7 @@ TEST(ReversalLists, TakeWhatVolumetricTablesLeaveOfAReversalAlongTheAxes) {
     for (const char* reversal : {"none", "lists"}) {
       TableFormatOptions options = options_for(format, CompensationType::volumetric());
       options.settings["reversal"] = reversal;
-      options.step = 50e-3;
+      options.step = 20e-3;
       const CompensationTables tables = format.read(write_tables(format, testing::result_of(truth), options));
       left[reversal] =
           remaining_rms(truth, tool, [&](const AxisPosition& at, const ApproachDirection& direction) {

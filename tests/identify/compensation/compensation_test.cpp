@@ -8,7 +8,7 @@
 
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/sim/machine/random_truth.h"

@@ -10,7 +10,7 @@
 #include "tests/support/identified_machines.h"
 #include "tests/support/refusal.h"
 #include "tests/support/rotary_machines.h"
-#include "volcal/identify/compensation/made_tables.h"
+#include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/model/description/errors.h"

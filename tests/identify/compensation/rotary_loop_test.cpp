@@ -13,7 +13,7 @@
 #include "tests/support/refusal.h"
 #include "tests/support/rotary_machines.h"
 #include "tests/support/table_samples.h"
-#include "volcal/identify/compensation/made_tables.h"
+#include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/sim/machine/control.h"

@@ -5,7 +5,7 @@
 
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -52,9 +52,10 @@ TEST(SuperimposedTables, AreJudgedAgainstTheMachineAsItWasMeasured) {
   const TableFormatOptions options = superimposed("L-POS", active_tables(AxisName::X, -5e-6));
   const VolumeCheck check =
       check_in_volume(result, options, format.read(write_tables(format, result, options)));
-  // 10 um/m over cells of 1/7 m: from 1/2 m the middles are at 0, +-1/7, +-2/7, +-3/7 m, the ends at +-1/2 m;
-  // sum of squares 2 (1 + 4 + 9) / 49 + 1/2 = 15/14 over 9 places.
-  EXPECT_NEAR(check.before.rms, 10e-6 * std::sqrt(15.0 / 14.0 / 9.0), 1e-10);
+  // 10 um/m over 1 m: about its middle the mean square is (10 um)^2 / 12, the largest half of 10 um, at an
+  // end.
+  EXPECT_NEAR(check.before.rms, 10e-6 / std::sqrt(12.0), 0.01e-6);
+  EXPECT_NEAR(check.before.max, 5e-6, 0.1e-6);  // about the mean of the places
   EXPECT_NEAR(check.exported.rms, 0.0, 1e-10);
 }
 

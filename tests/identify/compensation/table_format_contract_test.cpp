@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "tests/support/table_samples.h"
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/sim/machine/reference_machines.h"

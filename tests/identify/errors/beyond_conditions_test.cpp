@@ -37,7 +37,8 @@ class BeyondConditions : public ::testing::Test {
                                                {"coefficients", std::vector<double>(5, kHeight)}})};
     model.conditions.temperature_degC["spindle"] = {18.0, 21.0, 26.0};
     result_ = stated_result(testing_support::effect_campaign().machine, model);
-    result_.covariance.diagonal().setConstant(kU * kU);
+    result_.covariance.setIdentity(result_.layout.size, result_.layout.size);
+    result_.covariance *= kU * kU;
   }
 
   VolumetricError at(double temperature_degC) const {
@@ -127,7 +128,8 @@ TEST(FadedInVolume, IsAsACovarianceOfItsSize) {
                                                {"coefficients", std::vector<double>(5, coefficient)}})};
     model.conditions.temperature_degC["spindle"] = {18.0, 21.0, 26.0};
     FitResult result = stated_result(testing_support::effect_campaign().machine, model);
-    result.covariance.diagonal().setConstant(u * u);
+    result.covariance.setIdentity(result.layout.size, result.layout.size);
+    result.covariance *= u * u;
     return result;
   };
   const auto u_of = [](const FitResult& result, double temperature_degC) {

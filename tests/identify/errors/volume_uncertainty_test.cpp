@@ -9,7 +9,7 @@
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
 #include "tests/support/random_matrix.h"
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/identify/errors/volume/volumetric.h"
 
 namespace volcal {

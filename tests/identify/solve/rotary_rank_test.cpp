@@ -7,8 +7,11 @@
 
 #include "tests/support/five_axis.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/identify/solve/rank_causes.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
 namespace {
@@ -86,6 +89,19 @@ TEST(RotaryRank, AsksForToolsThatTheAxisMoves) {
   EXPECT_EQ(cause->text("turning"), "B");
   EXPECT_THAT(sentence(*cause), HasSubstr("turn B with a mandrel"));
   EXPECT_THAT(sentence(*cause), Not(HasSubstr("too few positions")));
+}
+
+/// R-tests alone: where a location error of the table is one with errors of the linear axes that follow, no
+/// tool and no place on the table tells them apart, but readings of the linear axes. With errors of the other
+/// rotary axis it is another matter.
+TEST(RotaryRank, AsksForTheLinearAxesWhereTheyFollowUnmeasured) {
+  const sim::TruthMachine truth = five_axis_truth(five_axis_machine("w C' A' b X Y Z t"), {}, 5);
+  const Campaign campaign = r_test_campaign(truth, GridPlan{}, 17);
+  const MeasurementModel model(campaign, resolve_knots(rotary_model_of(2), campaign));
+  const Finding beside = cause_exchangeable(model, "EX0C", {"EZX", "EB0Z", "EB0A"});
+  EXPECT_THAT(beside.texts("remedies"), Contains("linear-axes"));
+  EXPECT_THAT(sentence(beside), HasSubstr("measure the linear axes, too, with the rotary axes at 0"));
+  EXPECT_THAT(cause_exchangeable(model, "EX0C", {"EB0A"}).texts("remedies"), Not(Contains("linear-axes")));
 }
 
 }  // namespace

@@ -584,12 +584,57 @@ const std::vector<WordedFinding>& examples() {
          {"measured_to", FindingNumber{24.1, "degC", 1.0}}}},
        "T_column = 30 degC is beyond the readings, 18.9 to 24.1 degC: laws are continued to it, curves and "
        "surfaces fade out"},
+      {{FindingCode::ConditionWithoutEffect, {{"condition", "T_air"}}},
+       "no identified error depends on T_air: it changes nothing"},
+      {{FindingCode::ConditionOnPathsAlone,
+        {{"condition", "feed"}, {"effects", std::vector<std::string>{"following error X"}}}},
+       "feed drives following error X alone, which acts along a path: it changes none of these figures"},
+      {{FindingCode::ErrorsOfTables,
+        {{"tool", "side"},
+         {"conditions", std::vector<std::string>{"T_column", "time"}},
+         {"values", std::vector<FindingNumber>{{25.0, "degC", 1.0}, {2000.0, "s", 1.0}}},
+         {"shared_effects", std::vector<std::string>{"tool load EAZ", "coupling EAY Y Z"}},
+         {"effects_in_no_table", std::vector<std::string>{"following error X"}}}},
+       "these errors are those of tables for tool side, T_column 25 degC, time 2000 s; of tool load EAZ, "
+       "coupling EAY Y Z they hold what is nearest to it in a rigid body with that tool; following error X "
+       "is "
+       "in none of them"},
+      {{FindingCode::ErrorsOfTables,
+        {{"conditions", std::vector<std::string>{"T_column"}},
+         {"values", std::vector<FindingNumber>{{25.0, "degC", 1.0}}}}},
+       "these errors are those of tables for T_column 25 degC"},
+      {{FindingCode::TablesOfOtherTool, {{"tool", "short"}, {"tables_tool", "side"}}},
+       "the tables were made for tool side: of tool short they do not hold the effects that differ between "
+       "tools"},
+      {{FindingCode::TablesOfOtherConditions,
+        {{"condition", "T_column"},
+         {"value", FindingNumber{20.0, "degC", 1.0}},
+         {"of_tables", FindingNumber{25.0, "degC", 1.0}}}},
+       "the tables hold for T_column = 25 degC: T_column = 20 degC changes nothing in them"},
       {{FindingCode::EffectInNoTable, {{"effect", "following error X"}}},
        "following error X was identified and is in no table: it acts along a path or in one setup"},
+      {{FindingCode::EffectInNoFigure, {{"effect", "following error X"}}},
+       "following error X was identified and is in none of these figures: it acts along a path or in one "
+       "setup"},
       {{FindingCode::RotaryErrorsInNoTable, {{"axis", "C"}}},
        "errors of axis C were identified and are in no table: tables are for linear axes with C at 0"},
       {{FindingCode::RotaryErrorsPartlyInTables, {{"axis", "C"}, {"type", "R-POS"}}},
        "of the errors of axis C the tables hold R-POS alone"},
+      {{FindingCode::RotaryErrorsUnknownToTables, {{"axis", "C"}}},
+       "errors of axis C were not identified: the tables hold with C at 0, and what C does elsewhere is in "
+       "none "
+       "of these figures; measure with C in several positions"},
+      {{FindingCode::LeversOfTiltedHead,
+        {{"axes", "CB"},
+         {"rms", FindingNumber{1.9e-6, "um", 1e-6}},
+         {"max", FindingNumber{4.3e-6, "um", 1e-6}}}},
+       "tables of linear axes are made with the rotary axes at 0: where the head (CB) is tilted, angles of "
+       "linear axes act by another lever, which leaves 1.90 um RMS, 4.30 um at most over all poses; volcal "
+       "compensate corrects a program with the axes where they stand"},
+      {{FindingCode::RotaryTablesOffIdeal, {{"off", FindingNumber{12.3e-6, "um", 1e-6}}}},
+       "tables of rotary axes are up to 12.30 um off what their types could correct: what changes within one "
+       "of "
+       "their steps, as the errors of a worm, needs a finer --rotary-step"},
       {{FindingCode::RotaryErrorsNotInModel, {{"axis", "C"}, {"in_uncertainty", true}}},
        "axis C moves in these readings, and the model has no errors of it: what they do is in the residuals, "
        "what they may be by their prior in the uncertainty of the model; identify them by volcal fit from "

@@ -62,7 +62,7 @@ TEST(CircleCauses, SquarenessMakesAnEllipseOfKnownRange) {
   ModelSpec model = nominal_model();
   model.locations[*LocationSymbol::parse("EC0Y")] = 20e-6;
   FitResult identified = stated_result(campaign.machine, model);
-  identified.covariance(0, 0) = 1e-12;
+  identified.covariance.setConstant(1, 1, 1e-12);
   const Evaluation evaluation = evaluate_model(campaign, model);
   const StandardFigures figures = standard_figures(campaign, evaluation.residuals);
   ASSERT_EQ(figures.circles.size(), 1U);

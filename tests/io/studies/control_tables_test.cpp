@@ -13,7 +13,7 @@
 
 #include "tests/support/scratch_folder.h"
 #include "tests/support/table_samples.h"
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/sim/machine/random_truth.h"
 #include "volcal/sim/machine/reference_machines.h"
@@ -138,7 +138,7 @@ TEST(ControlTables, ProductsOfTablesAreTheIdealCompensation) {
       TableFormatOptions options;
       options.type = info.type;
       options.tool = "side_x";
-      options.step = 20e-3;
+      options.step = 13e-3;
       options.settings = testing::example_settings(format);
       const auto control =
           sim::command_correction({control_tables(format, write_tables(format, result, options)), 0.0, {}});

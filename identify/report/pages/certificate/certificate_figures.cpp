@@ -26,6 +26,10 @@ Json volume_left_rows(const MadeTables& tables) {
                     {"max", nullptr}});
   if (check.over_conditions)
     rows.push_back(left_row("tables, ends of the campaign's conditions", *check.over_conditions));
+  if (tables.all_axes) {
+    rows.push_back(left_row("before, poses of all axes", tables.all_axes->before));
+    rows.push_back(left_row("tables, poses of all axes", tables.all_axes->exported));
+  }
   return rows;
 }
 

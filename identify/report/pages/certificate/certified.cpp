@@ -36,8 +36,9 @@ std::string tool_with_offset(const Tool& tool) {
 std::string temperature_of_tables(const FitResult& result, const Conditions& conditions) {
   const double temperature = stated_reference_temperature(result, conditions);
   if (std::isnan(temperature)) return "that of the measurement; the campaign records none";
-  return fmt::format("{:.2f} °C{}", temperature,
-                     result.temperature_is_campaign_mean ? ", mean of the campaign" : "");
+  const std::string_view origin = reference_temperature_origin(result);
+  const bool is_reduced = !result.temperature_is_campaign_mean && origin != "assumed";
+  return fmt::format("{:.2f} °C{}{}", temperature, is_reduced ? "" : ", ", is_reduced ? "" : origin);
 }
 
 Json certified_machine(const CertificateView& certificate) {

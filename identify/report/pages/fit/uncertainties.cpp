@@ -2,6 +2,7 @@
 
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/page.h"
+#include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/values/quantity_groups.h"
 #include "volcal/identify/words/sentences.h"
 
@@ -77,11 +78,18 @@ Json others(const MonteCarloResult& study) {
   return rows;
 }
 
-/// What the fit said first.
+/// The conditions, and what the fit said first.
 Json messages(const MonteCarloResult& study) {
-  std::vector<Finding> all = study.contradicted;
+  std::vector<Finding> all = study.condition_findings;
+  all.insert(all.end(), study.contradicted.begin(), study.contradicted.end());
   all.insert(all.end(), study.notes.begin(), study.notes.end());
-  return sentences(all);
+  std::vector<std::string> texts = sentences(all);
+  std::string stated = stated_for_text(study.conditions);
+  if (!stated.empty()) {
+    stated.back() = '.';
+    texts.insert(texts.begin(), stated);
+  }
+  return texts;
 }
 
 }  // namespace

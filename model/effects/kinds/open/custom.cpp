@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/effects/registry.h"
@@ -15,6 +17,11 @@ namespace volcal {
 namespace {
 
 constexpr std::array<const char*, 2> kParameters = {"p", "q"};
+
+std::string shortened(const std::string& text) {
+  constexpr std::size_t kShown = 200;  // characters
+  return text.size() > kShown ? text.substr(0, kShown) + " ..." : text;
+}
 
 bool is_parameter(const std::string& name) {
   return std::ranges::find(kParameters, name) != kParameters.end();
@@ -78,7 +85,7 @@ class CustomFormula {
     }
     Eigen::VectorXd result = expression_.evaluate(columns);
     for (Eigen::Index row = 0; row < rows; ++row) {
-      if (!std::isfinite(result[row])) fail_not_finite(view.setup, names, columns, row);
+      if (!std::isfinite(result[row])) fail_not_finite(view, names, columns, row);
     }
     return result;
   }
@@ -89,7 +96,7 @@ class CustomFormula {
     try {
       return custom_expression(text);
     } catch (const ExpressionError& error) {
-      table.fail("the expression \"" + text + "\": " + error.what(), custom_expression_names());
+      table.fail("the expression \"" + shortened(text) + "\": " + error.what(), custom_expression_names());
     }
   }
 
@@ -104,18 +111,36 @@ class CustomFormula {
 
   std::string what() const { return "custom effect \"" + expression_.text() + "\""; }
 
-  [[noreturn]] void fail_not_finite(const Setup& setup, const std::vector<std::string>& names,
+  /// The line of a reading; without readings, as in tables, the pose.
+  static std::string place_of(const SetupView& view, std::size_t row) {
+    const Setup& setup = view.setup;
+    if (setup.data.empty() && setup.name.empty()) return "the pose" + pose_text(view, row);
+    const std::string where = setup.data.empty() ? "setup " + setup.name : setup.data;
+    return where + ", line " + std::to_string(setup.readings.source_line[row]);
+  }
+
+  /// " X10 mm Y0 mm B-30 deg"
+  static std::string pose_text(const SetupView& view, std::size_t row) {
+    std::ostringstream text;
+    for (const Axis& axis : view.campaign.machine.axes) {
+      const Unit unit = position_unit(axis.name);
+      const double value = view.setup.readings.position[index_of(axis.name)][row] / unit.si_per_unit;
+      text << ' ' << letter_of(axis.name) << value << ' ' << unit.suffix;
+    }
+    return text.str();
+  }
+
+  [[noreturn]] void fail_not_finite(const SetupView& view, const std::vector<std::string>& names,
                                     const Eigen::MatrixXd& columns, Eigen::Index row) const {
     std::string at;
     for (std::size_t k = 0; k < names.size(); ++k) {
       at +=
           (k > 0 ? ", " : "") + names[k] + " = " + std::to_string(columns(row, static_cast<Eigen::Index>(k)));
     }
-    const std::string where = setup.data.empty() ? "setup " + setup.name : setup.data;
-    const auto line = setup.readings.source_line[static_cast<std::size_t>(row)];
     throw InputError(
-        place_, what() + " is not finite at " + where + ", line " + std::to_string(line) + " (" + at + ")",
-        "write it so that it has a value at every reading, as in sqrt(max(0, z))");
+        place_,
+        what() + " is not finite at " + place_of(view, static_cast<std::size_t>(row)) + " (" + at + ")",
+        "write it so that it has a value at every reading and pose, as in sqrt(max(0, z))");
   }
 
   SourcePlace place_;

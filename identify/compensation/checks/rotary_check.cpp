@@ -1,25 +1,14 @@
-#include "volcal/identify/compensation/rotary_check.h"
+#include "volcal/identify/compensation/checks/rotary_check.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "volcal/identify/compensation/checks/joint_error_shares.h"
 #include "volcal/identify/compensation/five_axis_compensation.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 
 namespace volcal {
 namespace {
-
-JointErrorSource of_rotary_axes(const JointErrorSource& all) {
-  return [all](const AxisPosition& position, const ApproachDirection& direction) {
-    PoseErrors<double> errors = all(position, direction);
-    for (const AxisName axis : kAllAxes) {
-      if (is_rotary(axis)) continue;
-      errors.motion[index_of(axis)] = {};
-      errors.location[index_of(axis)] = {};
-    }
-    return errors;
-  };
-}
 
 template <class CorrectionAt>
 RotaryLeft left_under(const FiveAxisCompensation& ideal, const std::vector<AxisPosition>& poses,
@@ -37,12 +26,21 @@ RotaryLeft left_under(const FiveAxisCompensation& ideal, const std::vector<AxisP
   return left;
 }
 
+FiveAxisCompensation ideal_of_rotary_axes(const FitResult& result, const TableFormatOptions& options) {
+  const Tool& tool = tool_of(result.machine, options);
+  FiveAxisSettings settings;
+  settings.type = options.type.rotary();
+  settings.tool_offset = tool.offset;
+  return {result.machine, settings,
+          of_rotary_axes(joint_errors(result, tool, conditions_of(result, options)))};
+}
+
 /// The machine with the errors of its rotary axes alone, and what tables add to its commands for them.
 class RotaryJudgement {
  public:
   RotaryJudgement(const TableFormat& format, const FitResult& result, const TableFormatOptions& options,
                   const CompensationTables& tables)
-      : ideal_(result.machine, settings_of(result, options), errors_of(result, options)),
+      : ideal_(ideal_of_rotary_axes(result, options)),
         of_linear_(sampled_compensation(format, result, options)),
         has_linear_(!options.type.linear().empty()),
         tables_(tables) {}
@@ -55,17 +53,6 @@ class RotaryJudgement {
   }
 
  private:
-  static FiveAxisSettings settings_of(const FitResult& result, const TableFormatOptions& options) {
-    FiveAxisSettings settings;
-    settings.type = options.type.rotary();
-    settings.tool_offset = tool_of(result.machine, options).offset;
-    return settings;
-  }
-  static JointErrorSource errors_of(const FitResult& result, const TableFormatOptions& options) {
-    return of_rotary_axes(
-        joint_errors(result, tool_of(result.machine, options), conditions_of(result, options)));
-  }
-
   FiveAxisCompensation ideal_;
   Compensation of_linear_;
   bool has_linear_;
@@ -74,6 +61,18 @@ class RotaryJudgement {
 
 }  // namespace
 
+DisplacementField linear_part(const FitResult& result, const TableFormatOptions& options,
+                              const CompensationTables& tables) {
+  if (options.type.rotary().empty())
+    return [&tables](const AxisPosition& position, const ApproachDirection& direction) {
+      return tables.correction(position, direction).linear;
+    };
+  return [&tables, ideal = ideal_of_rotary_axes(result, options)](const AxisPosition& position,
+                                                                  const ApproachDirection& direction) {
+    return Eigen::Vector3d(tables.correction(position, direction).linear - ideal.correction(position).linear);
+  };
+}
+
 std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const FitResult& result,
                                              const TableFormatOptions& options,
                                              const CompensationTables& tables) {
@@ -81,10 +80,16 @@ std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const Fi
   const RotaryJudgement judgement(format, result, options, tables);
   const FiveAxisCompensation& ideal = judgement.ideal();
   const std::vector<AxisPosition> poses = poses_of_all_axes(result.machine, kRotaryCheckPoses);
-  return RotaryCheck{
-      left_under(ideal, poses, [](const AxisPosition&) { return Correction{}; }),
-      left_under(ideal, poses, [&](const AxisPosition& pose) { return ideal.correction(pose); }),
-      left_under(ideal, poses, [&](const AxisPosition& pose) { return judgement.by_tables(pose); })};
+  const auto by_ideal = [&](const AxisPosition& pose) { return ideal.correction(pose); };
+  const auto by_tables = [&](const AxisPosition& pose) { return judgement.by_tables(pose); };
+  RotaryCheck check{left_under(ideal, poses, [](const AxisPosition&) { return Correction{}; }),
+                    left_under(ideal, poses, by_ideal), left_under(ideal, poses, by_tables)};
+  for (const AxisPosition& pose : poses) {
+    const Eigen::Vector3d off_w = ideal.left_by(by_tables(pose), pose).displacement_w -
+                                  ideal.left_by(by_ideal(pose), pose).displacement_w;
+    check.deviation = std::max(check.deviation, off_w.norm());
+  }
+  return check;
 }
 
 std::vector<RotaryCorrected> rotary_corrections(const TableFormat& format, const FitResult& result,

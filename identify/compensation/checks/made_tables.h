@@ -3,9 +3,10 @@
 
 #include <vector>
 
-#include "volcal/identify/compensation/rotary_check.h"
+#include "volcal/identify/compensation/checks/all_axes_check.h"
+#include "volcal/identify/compensation/checks/rotary_check.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/identify/compensation/table_format.h"
-#include "volcal/identify/compensation/volume_check.h"
 
 namespace volcal {
 
@@ -22,6 +23,7 @@ struct MadeTables {
   CompensationTables read_back;
   VolumeCheck check;
   std::optional<RotaryCheck> rotary_check;  ///< of a type for rotary axes
+  std::optional<AllAxesCheck> all_axes;     ///< of a machine with rotary axes
   std::vector<Finding> effects_left_out;
 };
 

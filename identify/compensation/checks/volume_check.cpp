@@ -1,13 +1,16 @@
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 
+#include "volcal/identify/compensation/checks/rotary_check.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/errors/volume/volume_uncertainty.h"
 #include "volcal/model/description/errors.h"
 
@@ -19,9 +22,9 @@ constexpr double kCoarsestDecade = 10.0, kFinestStep = 0.99e-4;  // m
 constexpr std::size_t kMostBytes = 30'000'000;
 
 /// The error that is left where a compensation acts.
-DisplacementField corrected(const DisplacementField& errors, const CompensationTables& tables) {
-  return [errors, &tables](const AxisPosition& position, const ApproachDirection& direction) {
-    return Eigen::Vector3d(errors(position, direction) + tables.correction(position, direction).linear);
+DisplacementField corrected(const DisplacementField& errors, const DisplacementField& correction) {
+  return [errors, correction](const AxisPosition& position, const ApproachDirection& direction) {
+    return Eigen::Vector3d(errors(position, direction) + correction(position, direction));
   };
 }
 
@@ -38,25 +41,51 @@ DisplacementField part_of(const Compensation& type) {
   };
 }
 
-/// Middles of `cells` equal parts of every linear axis' travel, on request with its ends.
-std::vector<AxisPosition> cell_middles(const Machine& machine, int cells, bool with_ends) {
+/// Every combination of these shares of the travel of the linear axes, others at home.
+std::vector<AxisPosition> at_shares(const Machine& machine, const std::vector<double>& shares) {
   std::vector<AxisPosition> positions = {home_of(machine)};
   for (const AxisName name : linear_axes_of(machine)) {
     const Axis& axis = machine.axis(name);
-    std::vector<double> places;
-    if (with_ends) places = {axis.travel_min, axis.travel_max};
-    for (int i = 0; i < cells; ++i) places.push_back(axis.travel_min + axis.travel() * (i + 0.5) / cells);
     std::vector<AxisPosition> extended;
     for (const AxisPosition& position : positions) {
-      for (const double place : places) {
+      for (const double share : shares) {
         AxisPosition next = position;
-        next[index_of(name)] = place;
+        next[index_of(name)] = axis.travel_min + axis.travel() * share;
         extended.push_back(next);
       }
     }
     positions = std::move(extended);
   }
   return positions;
+}
+
+std::vector<double> middles(int cells) {
+  std::vector<double> shares;
+  for (int i = 0; i < cells; ++i) shares.push_back((i + 0.5) / cells);
+  return shares;
+}
+
+/// As many places as there are such cells per axis, spread evenly over the travel of the linear axes.
+std::vector<AxisPosition> spread_places(const Machine& machine, int cells) {
+  std::vector<AxisPosition> places;
+  const std::vector<AxisName> axes = linear_axes_of(machine);
+  const int count = static_cast<int>(std::lround(std::pow(cells, static_cast<double>(axes.size()))));
+  for (const AxisPosition& pose : poses_of_all_axes(machine, count)) {
+    places.push_back(home_of(machine));
+    for (const AxisName axis : axes) places.back()[index_of(axis)] = pose[index_of(axis)];
+  }
+  return places;
+}
+
+void add_approaches(const std::vector<AxisPosition>& positions, bool inside,
+                    std::vector<VolumePoint>& points) {
+  for (const AxisPosition& position : positions) {
+    for (unsigned signs = 0; signs < 8; ++signs) {
+      VolumePoint point{position, {}, inside};
+      for (std::size_t i = 0; i < 3; ++i) point.direction[i] = ((signs >> i) & 1U) != 0 ? 1 : -1;
+      points.push_back(point);
+    }
+  }
 }
 
 /// 5, 2 and 1 x 10^n up to `longest`, coarse to fine, m.
@@ -71,18 +100,17 @@ std::vector<double> round_steps(double longest) {
 }
 
 /// Largest difference of a component; home approached towards + is the zero of both.
-double largest_deviation(const Machine& machine, const Compensation& ideal, const CompensationTables& tables,
-                         bool both_directions) {
+double largest_deviation(const Machine& machine, const Compensation& ideal,
+                         const DisplacementField& correction, bool both_directions) {
   const auto difference = [&](const AxisPosition& position, const ApproachDirection& direction) {
-    return Eigen::Vector3d(tables.correction(position, direction).linear -
-                           ideal.correction(position, direction));
+    return Eigen::Vector3d(correction(position, direction) - ideal.correction(position, direction));
   };
   const std::vector<ApproachDirection> directions =
       both_directions ? std::vector<ApproachDirection>{{1, 1, 1, 0, 0, 0}, {-1, -1, -1, 0, 0, 0}}
                       : std::vector<ApproachDirection>{{}};
   const Eigen::Vector3d zero = difference(home_of(machine), directions.front());
   double largest = 0.0;
-  for (const AxisPosition& position : cell_middles(machine, kStepCells, false)) {
+  for (const AxisPosition& position : spread_places(machine, kStepCells)) {
     for (const ApproachDirection& direction : directions)
       largest = std::max(largest, (difference(position, direction) - zero).cwiseAbs().maxCoeff());
   }
@@ -99,13 +127,14 @@ std::size_t bytes_of(const std::vector<TableFile>& files) {
 
 std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis) {
   std::vector<VolumePoint> points;
-  for (const AxisPosition& position : cell_middles(machine, cells_per_axis, true)) {
-    for (unsigned signs = 0; signs < 8; ++signs) {
-      VolumePoint point{position, {}};
-      for (std::size_t i = 0; i < 3; ++i) point.direction[i] = ((signs >> i) & 1U) != 0 ? 1 : -1;
-      points.push_back(point);
-    }
-  }
+  add_approaches(spread_places(machine, cells_per_axis), true, points);
+  add_approaches(at_shares(machine, {0.0, 0.5, 1.0}), false, points);
+  return points;
+}
+
+std::vector<VolumePoint> volume_lattice(const Machine& machine, int cells_per_axis) {
+  std::vector<VolumePoint> points;
+  add_approaches(at_shares(machine, middles(cells_per_axis)), true, points);
   return points;
 }
 
@@ -142,12 +171,18 @@ ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& poi
                      const DisplacementField& errors) {
   const Eigen::Vector3d movable = movable_directions(machine);
   std::vector<Eigen::Vector3d> places, vectors;
-  for (const VolumePoint& point : points) {
-    places.push_back(place_of(machine, point.position));
-    vectors.emplace_back(errors(point.position, point.direction).cwiseProduct(movable));
-  }
-  const VolumetricFigures figures = volumetric_figures(without_rigid_motion(places, vectors));
-  return {figures.rms, figures.max};
+  const auto add = [&](bool inside) {
+    for (const VolumePoint& point : points) {
+      if (point.inside != inside) continue;
+      places.push_back(place_of(machine, point.position));
+      vectors.emplace_back(errors(point.position, point.direction).cwiseProduct(movable));
+    }
+  };
+  add(true);
+  const std::size_t inside = places.size();
+  add(false);
+  const std::vector<Eigen::Vector3d> left = without_rigid_motion(places, vectors, inside);
+  return {volumetric_figures(std::span(left).first(inside)).rms, volumetric_figures(left).max};
 }
 
 namespace {
@@ -192,7 +227,7 @@ std::vector<Conditions> ends_of_conditions(const FitResult& result, const Machin
 }
 
 std::optional<ErrorLeft> left_over_conditions(const FitResult& result, const TableFormatOptions& options,
-                                              const CompensationTables& tables,
+                                              const DisplacementField& correction,
                                               const std::vector<VolumePoint>& points) {
   const Conditions stated = conditions_of(result, options);
   const Tool& tool = tool_of(result.machine, options);
@@ -204,7 +239,7 @@ std::optional<ErrorLeft> left_over_conditions(const FitResult& result, const Tab
     TableFormatOptions there = options;
     there.conditions = conditions;
     const ErrorLeft left =
-        error_left(result.machine, points, corrected(errors_to_correct(result, there), tables));
+        error_left(result.machine, points, corrected(errors_to_correct(result, there), correction));
     over.rms += left.rms * left.rms / static_cast<double>(ends.size());
     over.max = std::max(over.max, left.max);
   }
@@ -218,7 +253,7 @@ double identification_uncertainty(const FitResult& result, const TableFormatOpti
   std::vector<AxisPosition> positions;
   std::vector<ApproachDirection> directions;
   for (const VolumePoint& point : points) {
-    if (point.direction[0] * point.direction[1] * point.direction[2] < 0) continue;
+    if (!point.inside || point.direction[0] * point.direction[1] * point.direction[2] < 0) continue;
     positions.push_back(point.position);
     directions.push_back(point.direction);
   }
@@ -238,7 +273,8 @@ VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& o
       displacement_field(result, tool_of(machine, options), conditions_of(result, options));
   const AxisPosition lines = lines_of(machine, options);
   const Compensation ideal(machine, lines, options.type, errors);
-  const DisplacementField exported = corrected(errors, tables);
+  const DisplacementField correction = linear_part(result, options, tables);
+  const DisplacementField exported = corrected(errors, correction);
   const std::vector<VolumePoint> points = volume_points(machine, kVolumeCells);
 
   VolumeCheck check;
@@ -251,7 +287,7 @@ VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& o
                            error_left(machine, points, part_of(of_exported))});
   }
   check.identification_u = identification_uncertainty(result, options, points);
-  check.over_conditions = left_over_conditions(result, options, tables, points);
+  check.over_conditions = left_over_conditions(result, options, correction, points);
   if (!machine.parallel_axes().empty()) {
     const std::vector<VolumePoint> over = over_parallel_axes(machine, points);
     check.over_parallel = {{}, error_left(machine, over, measured), error_left(machine, over, exported)};
@@ -275,8 +311,9 @@ StepChoice choose_step(const TableFormat& format, const FitResult& result, Table
     try {
       const std::vector<TableFile> files = write_tables(format, result, options);
       if (bytes_of(files) > kMostBytes) break;
-      const double deviation =
-          largest_deviation(result.machine, ideal, format.read(files), format.limits.both_directions);
+      const CompensationTables tables = format.read(files);
+      const double deviation = largest_deviation(result.machine, ideal, linear_part(result, options, tables),
+                                                 format.limits.both_directions);
       if (deviation < best.deviation) best = {step, deviation, false};
       best.reached = best.deviation <= tolerance + 0.5 * format.limits.resolution;
     } catch (const InputError& error) {  // too many points, or values out of range where it is too coarse

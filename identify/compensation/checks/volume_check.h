@@ -12,14 +12,14 @@
 
 namespace volcal {
 
-/// Cells per axis of the volume in whose middles, and at the ends of travel, errors are judged, by all
-/// approaches from + and from -.
-inline constexpr int kVolumeCells = 7;
+/// To this power of the number of linear axes places errors are judged at, by all approaches from + and from
+/// -.
+inline constexpr int kVolumeCells = 9;
 
 /// Errors of the functional point, m, after their best rigid motion, which a frame's alignment takes up.
 struct ErrorLeft {
-  double rms = 0.0;  ///< sqrt(mean |e|^2)
-  double max = 0.0;
+  double rms = 0.0;  ///< sqrt(mean |e|^2) over the volume
+  double max = 0.0;  ///< at these places and at the ends of travel
 };
 
 struct PartLeft {
@@ -53,15 +53,20 @@ struct VolumeCheck {
   std::optional<ParallelLeft> over_parallel;  ///< none where the machine has no parallel axis
 };
 
-/// Middles of cells, which lie between the nodes of any table, and the ends of travel, each approached from +
-/// and - in all combinations; parallel axes at home.
 struct VolumePoint {
   AxisPosition position{};
   ApproachDirection direction{};
+  bool inside = true;  ///< counts in the mean; otherwise in the maximum alone
 };
+/// As many places as there are cells, and after them the ends and the middle of travel in all combinations,
+/// each approached from + and - in all combinations; other axes at home. The places follow a sequence without
+/// a period (Halton 1960): no wave and no table has one in common with them, and as many positions of every
+/// axis are seen as there are places.
 std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis);
+/// The middles of the cells, a lattice: for what is solved by positions of the axes.
+std::vector<VolumePoint> volume_lattice(const Machine& machine, int cells_per_axis);
 
-/// Figures of a field at these points.
+/// Figures of a field at these points: the rigid motion is that of the points inside.
 ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& points,
                      const DisplacementField& errors);
 

@@ -22,6 +22,7 @@ struct RotaryLeft {
 
 struct RotaryCheck {
   RotaryLeft before, ideal, exported;
+  double deviation = 0.0;  ///< of the tables from the ideal, largest displacement of the functional point, m
 };
 
 /// By the exact model with the identified errors of the rotary axes alone, mean of both directions; what the
@@ -30,6 +31,11 @@ struct RotaryCheck {
 std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const FitResult& result,
                                              const TableFormatOptions& options,
                                              const CompensationTables& tables);
+
+/// What tables add to the commands of X, Y, Z for errors of linear axes, with the rotary axes at 0: without
+/// what the ideal compensation of the type's rotary axes adds there. `tables` must live as long.
+DisplacementField linear_part(const FitResult& result, const TableFormatOptions& options,
+                              const CompensationTables& tables);
 
 /// What tables do about the errors of rotary axes at one pose.
 struct RotaryCorrected {

@@ -1,0 +1,27 @@
+#pragma once
+/// What tables leave of all identified errors together, over poses of all axes.
+
+#include <optional>
+
+#include "volcal/identify/compensation/checks/volume_check.h"
+#include "volcal/identify/compensation/compensation_tables.h"
+#include "volcal/identify/compensation/table_format.h"
+
+namespace volcal {
+
+inline constexpr int kAllAxesPoses = 400;
+
+struct AllAxesCheck {
+  ErrorLeft before, exported;
+  /// What L-VOL made with the rotary axes at 0, without any table's step, leaves of the errors of linear axes
+  /// alone: where a head is tilted, their angles act by another lever.
+  ErrorLeft levers;
+};
+
+/// By the exact model with the errors as identified, mean of both directions, after the best rigid motion of
+/// the workpiece. Where tables were active, the new ones replace them. Nothing for a machine without rotary
+/// axes.
+std::optional<AllAxesCheck> check_all_axes(const FitResult& result, const TableFormatOptions& options,
+                                           const CompensationTables& tables);
+
+}  // namespace volcal

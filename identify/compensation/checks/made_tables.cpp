@@ -1,0 +1,86 @@
+#include "volcal/identify/compensation/checks/made_tables.h"
+
+#include <algorithm>
+#include <string>
+
+#include "volcal/identify/errors/rotary/rotary_axes.h"
+#include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kNotableLever = 0.1e-6;  // m
+constexpr double kCoarseStep = 3.0;       // tolerances
+
+/// What was identified and is in none of these tables, or partly.
+std::vector<Finding> left_out_by(CompensationType type, const FitResult& result) {
+  std::vector<Finding> findings;
+  for (const Finding& finding : errors_in_no_table(result)) {
+    const bool of_rotary = finding.code == FindingCode::RotaryErrorsInNoTable;
+    if (!of_rotary || type.rotary().empty()) {
+      findings.push_back(finding);
+    } else if (!type.contains(CompensationType::rotary_volumetric())) {
+      findings.push_back({FindingCode::RotaryErrorsPartlyInTables,
+                          {{"axis", finding.text("axis")}, {"type", type.rotary().name()}}});
+    }
+  }
+  const std::vector<AxisName> identified = identified_rotary_axes(result);
+  for (const Axis& axis : result.machine.axes) {
+    if (is_rotary(axis.name) && std::ranges::find(identified, axis.name) == identified.end())
+      findings.push_back(
+          {FindingCode::RotaryErrorsUnknownToTables, {{"axis", std::string(1, letter_of(axis.name))}}});
+  }
+  return findings;
+}
+
+void report_levers(const Machine& machine, MadeTables& made) {
+  if (!made.all_axes || made.options.type.linear().empty() || made.all_axes->levers.rms < kNotableLever)
+    return;
+  std::string head;
+  for (const Joint& joint : machine.structure.joints) {
+    if (!joint.workpiece_side && is_rotary(joint.axis)) head += letter_of(joint.axis);
+  }
+  const auto micrometres = [](double metres) { return FindingNumber{metres, "um", kMetrePerMicrometre}; };
+  made.effects_left_out.push_back({FindingCode::LeversOfTiltedHead,
+                                   {{"axes", head},
+                                    {"rms", micrometres(made.all_axes->levers.rms)},
+                                    {"max", micrometres(made.all_axes->levers.max)}}});
+}
+
+/// Positions of rotary axes follow no tolerance.
+void report_rotary_step(MadeTables& made) {
+  const double tolerance = made.tolerance > 0.0 ? made.tolerance : kDefaultTableTolerance;
+  if (!made.rotary_check || made.rotary_check->deviation <= kCoarseStep * tolerance) return;
+  made.effects_left_out.push_back(
+      {FindingCode::RotaryTablesOffIdeal,
+       {{"off", FindingNumber{made.rotary_check->deviation, "um", kMetrePerMicrometre}}}});
+}
+
+}  // namespace
+
+MadeTables make_tables(const TableFormat& format, const FitResult& result, const TableFormatOptions& options,
+                       double tolerance) {
+  MadeTables made;
+  made.format = &format;
+  made.options = options;
+  check_table_options(format, result, made.options);
+  const bool own_positions = format.positions_of_own && tolerance == 0.0;
+  if (options.step == 0.0 && !own_positions) {
+    made.tolerance = tolerance > 0.0 ? tolerance : kDefaultTableTolerance;
+    made.step = choose_step(format, result, made.options, made.tolerance);
+    made.options.step = made.step.step;
+  }
+  if (format.step_of != nullptr) made.options.step = format.step_of(made.options);
+  made.files = write_tables(format, result, made.options);
+  made.read_back = format.read(made.files);
+  made.check = check_in_volume(result, made.options, made.read_back);
+  made.rotary_check = check_rotary_axes(format, result, made.options, made.read_back);
+  made.all_axes = check_all_axes(result, made.options, made.read_back);
+  made.effects_left_out = left_out_by(made.options.type, result);
+  report_levers(result.machine, made);
+  report_rotary_step(made);
+  return made;
+}
+
+}  // namespace volcal

@@ -1,0 +1,40 @@
+/// Tables whose positions are further apart than the errors change.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/program.h"
+
+namespace volcal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::run_program;
+
+/// Straightness of X with the pitch of a 20 mm screw, 5 um: a grid of 50 mm takes its values at random phases
+/// and adds to it, one of 2 mm takes it away.
+TEST(CoarseTables, AreNotToBeLoaded) {
+  const testing::ScratchFolder scratch;
+  const std::string folder = scratch.path().string();
+  ASSERT_EQ(run_program("init \"w X' b Y Z t\" -o " + folder + "/m").exit_code, 0);
+  std::ofstream(folder + "/m/screw.toml")
+      << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n[functions]\ndefault = { basis = \"zero\" "
+         "}\n"
+      << "[[effects]]\nkind = \"lead-error\"\nsymbol = \"EYX\"\nperiod_mm = 20\ncos_um = 5.0\nsin_um = 0.0\n";
+  const std::string tables = "tables " + folder + "/m/screw.toml --dry-run --format ";
+  const auto coarse = run_program(tables + "linuxcnc-grid --step 47");
+  EXPECT_THAT(coarse.output, HasSubstr("errs more with these tables than without: do not load them"));
+  EXPECT_EQ(nlohmann::json::parse(run_program(tables + "linuxcnc-grid --step 47 --json").output)
+                .at("more_than_without"),
+            true);
+  const auto fine = run_program(tables + "csv --positions 601");
+  EXPECT_THAT(fine.output, Not(HasSubstr("do not load")));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,142 @@
+// What tables leave: of all axes together, of linear axes beside rotary ones, and of errors that change
+// within a lattice of places.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/support/identified_machines.h"
+#include "tests/support/machines.h"
+#include "tests/support/rotary_machines.h"
+#include "tests/support/table_samples.h"
+#include "volcal/identify/compensation/checks/made_tables.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
+#include "volcal/identify/errors/stated_errors.h"
+#include "volcal/identify/errors/volume/volumetric.h"
+#include "volcal/model/description/finding_codes.h"
+#include "volcal/model/effects/effect_keys.h"
+
+namespace volcal {
+namespace {
+
+MadeTables tables_of(const FitResult& result, const std::string& name, const CompensationType& type) {
+  const TableFormat& format = *find_table_format(name);
+  TableFormatOptions options;
+  options.type = type;
+  options.settings = testing::example_settings(format);
+  return make_tables(format, result, options);
+}
+
+bool is_said(const MadeTables& made, FindingCode code) {
+  return std::ranges::find(made.effects_left_out, code, &Finding::code) != made.effects_left_out.end();
+}
+
+/// A roll EAX(x) turns the tool vector t of a head about x by EAX: (0, -t_z, t_y) EAX. With the head at A it
+/// is R(A) t; tables hold the error with t itself, so that EAX (0, -(R t - t)_z, (R t - t)_y) is left.
+TEST(TablesOfAHead, LeaveTheLeverOfItsTilt) {
+  Machine machine = testing::rotary_machine("w b X Y Z A t");
+  const auto roll = [](double q) { return 40e-6 * q / 0.6; };  // zero at home, as tables have it
+  const FitResult result = testing::result_with(machine, {.functions = {{"EAX", roll}}}, 6);
+  const MadeTables made = tables_of(result, "neutral-csv", CompensationType::volumetric());
+  const Eigen::Vector3d tool = machine.tools.front().offset, centre = machine.axis(AxisName::A).centre;
+  std::vector<Eigen::Vector3d> places, errors;
+  for (const AxisPosition& pose : poses_of_all_axes(machine, kAllAxesPoses)) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(pose[index_of(AxisName::A)], Eigen::Vector3d::UnitX()).toRotationMatrix();
+    const Eigen::Vector3d tip = centre + turn * (tool - centre);
+    places.push_back(Eigen::Vector3d(pose[0], pose[1], pose[2]) + tip);
+    const Eigen::Vector3d moved = tip - tool;
+    errors.push_back(roll(pose[0]) * Eigen::Vector3d(0.0, -moved.z(), moved.y()));
+  }
+  const VolumetricFigures expected = volumetric_figures(without_rigid_motion(places, errors));
+  ASSERT_TRUE(made.all_axes.has_value());
+  EXPECT_GT(expected.rms, 1e-6);
+  EXPECT_NEAR(made.all_axes->levers.rms, expected.rms, 2e-3 * expected.rms);  // second order
+  EXPECT_NEAR(made.all_axes->exported.rms, expected.rms, 0.02 * expected.rms);
+  EXPECT_LT(made.check.exported.rms, 0.05e-6);
+  EXPECT_TRUE(is_said(made, FindingCode::LeversOfTiltedHead));
+}
+
+TEST(TablesOfATable, HaveNoLeverThatTurns) {
+  const auto roll = [](double q) { return 40e-6 * q / 0.6; };  // zero at home, as tables have it
+  const FitResult result =
+      testing::result_with(testing::rotary_machine("w A' b X Y Z t"), {.functions = {{"EAX", roll}}}, 6);
+  const MadeTables made = tables_of(result, "neutral-csv", CompensationType::volumetric());
+  ASSERT_TRUE(made.all_axes.has_value());
+  EXPECT_LT(made.all_axes->levers.rms, 0.01e-6);
+  EXPECT_LT(made.all_axes->exported.rms, 0.05e-6);
+  EXPECT_FALSE(is_said(made, FindingCode::LeversOfTiltedHead));
+  EXPECT_TRUE(is_said(made, FindingCode::RotaryErrorsUnknownToTables)) << "nothing of A was identified";
+}
+
+/// Errors of rotary axes alone: what tables add for them with the axes at 0 is no error of the linear axes,
+/// where one of these stands on the table too.
+TEST(TablesOfRotaryAxes, LeaveLinearAxesAlone) {
+  for (const char* structure : {"w C' A' Y' b X Z t", "w Y' C' A' b X Z t", testing::kMixed}) {
+    const FitResult result = testing::rotary_result(structure);
+    const MadeTables made = tables_of(result, "neutral-csv",
+                                      CompensationType::volumetric() | CompensationType::rotary_volumetric());
+    EXPECT_LT(made.check.before.rms, 1e-9) << structure;
+    EXPECT_LT(made.check.exported.max, 0.3e-6) << structure;
+    EXPECT_LT(made.step.deviation, 0.3e-6) << structure;
+    EXPECT_TRUE(made.step.reached) << structure;
+  }
+}
+
+FitResult stated(const EffectSpec& effect) {
+  Machine machine = testing_support::machine_of("wX'bYZt");
+  machine.tools = {{"short", {0.0, 0.0, -0.1}, 0.0}};
+  ModelSpec model;
+  model.default_function.basis = "zero";
+  model.effects = {effect};
+  return stated_result(machine, model);
+}
+
+/// A lead error of 5 um along 1 m of X, periods in a proportion to the travel that a lattice has too: its
+/// root mean square is 5 / sqrt 2 um.
+TEST(ErrorLeft, SeesWavesOfAnyPeriod) {
+  for (const double period : {1.0 / 7.0, 1.0 / 9.0, 0.02, 0.01}) {
+    const FitResult result = stated(effect_spec(
+        "lead-error", {{"symbol", std::string("EYX")}, {"period", period}, {"cos", 5e-6}, {"sin", 0.0}}));
+    const DisplacementField errors = displacement_field(result, result.machine.tools.front(), {});
+    const ErrorLeft left = error_left(result.machine, volume_points(result.machine, kVolumeCells), errors);
+    EXPECT_NEAR(left.rms, 5e-6 / std::numbers::sqrt2, 0.2e-6) << period;
+    EXPECT_GT(left.max, 4.8e-6) << period;
+  }
+}
+
+/// A bump 8 mm wide that stands between the places of a lattice is left by a table of large steps.
+TEST(ErrorLeft, SeesWhatIsLocal) {
+  const FitResult result = stated(effect_spec("custom", {{"target", std::string("EYX")},
+                                                         {"expression", std::string("exp(-((x-460)/8)^2)")},
+                                                         {"amplitude", 8e-6}}));
+  const TableFormat& format = *find_table_format("neutral-csv");
+  TableFormatOptions options;
+  options.step = 0.05;
+  const MadeTables made = make_tables(format, result, options);
+  EXPECT_GT(made.check.before.max, 7e-6);
+  EXPECT_GT(made.check.exported.max, 5e-6);
+}
+
+TEST(IdentifiedRotaryAxes, HaveEffectsToo) {
+  Machine machine = testing::rotary_machine("w C' b X Y Z t");
+  ModelSpec model;
+  model.default_function.basis = "zero";
+  model.effects = {effect_spec("worm-error", {{"symbol", std::string("ECC")},
+                                              {"period", 4.0 * std::numbers::pi / 180.0},
+                                              {"cos", 20e-6},
+                                              {"sin", 0.0}})};
+  const FitResult result = stated_result(machine, model);
+  EXPECT_THAT(identified_rotary_axes(result), ::testing::ElementsAre(AxisName::C));
+  AxisPosition turned{};
+  turned[index_of(AxisName::C)] = 1.0;
+  EXPECT_NO_THROW(require_identified_rotary_axes(result, turned));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -132,6 +132,25 @@ void define_tables(py::module_& module) {
       .def_property_readonly(
           "effects_left_out", [](const MadeTables& made) { return findings_of(made.effects_left_out); },
           "What was identified and is in no table.")
+      .def_property_readonly(
+          "cautions", [](const MadeTables& made) { return findings_of(made.cautions); },
+          "What else there is to know before they are loaded.")
+      .def_property_readonly(
+          "rotary_error_left",
+          [](const MadeTables& made) -> py::object {
+            if (!made.rotary_check) return py::none();
+            return from_json(json_text(rotary_check_json(*made.rotary_check), -1));
+          },
+          "Errors of rotary axes before, with the ideal compensation and with the tables, um and urad; None "
+          "without a type for rotary axes.")
+      .def_property_readonly(
+          "all_axes_error_left",
+          [](const MadeTables& made) -> py::object {
+            if (!made.all_axes) return py::none();
+            return from_json(json_text(all_axes_json(*made.all_axes), -1));
+          },
+          "Errors of all axes before and with the tables, over poses of all axes, um; None for a machine "
+          "without rotary axes.")
       .def("write", &write_tables_folder, py::arg("path"),
            "Writes the files into a folder. Raises InputError.")
       .def("__repr__", [](const MadeTables& made) {

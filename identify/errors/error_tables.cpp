@@ -442,20 +442,12 @@ std::vector<Finding> effects_in_no_figure(const FitResult& result) {
   return findings;
 }
 
-std::vector<Finding> errors_in_no_table(const FitResult& result) {
+std::vector<Finding> errors_in_no_table(const FitResult& result, std::span<const AxisName> rotary) {
   std::vector<Finding> findings;
   for (const EffectOnNoPose& effect : effects_on_no_pose(result))
     findings.push_back({FindingCode::EffectInNoTable, {{"effect", effect.label}}});
-  std::string axes;
-  const auto add = [&axes](AxisName axis) {
-    if (is_rotary(axis) && axes.find(letter_of(axis)) == std::string::npos) axes += letter_of(axis);
-  };
-  for (const FunctionGroup& group : result.layout.groups) add(group.axis);
-  for (const ParameterBlock& block : result.layout.blocks) {
-    if (block.location) add(block.location->axis);
-  }
-  for (const char axis : axes)
-    findings.push_back({FindingCode::RotaryErrorsInNoTable, {{"axis", std::string{axis}}}});
+  for (const AxisName axis : rotary)
+    findings.push_back({FindingCode::RotaryErrorsInNoTable, {{"axis", std::string(1, letter_of(axis))}}});
   return findings;
 }
 

@@ -38,8 +38,9 @@ struct ErrorTableOptions {
 
 /// "errors.held-beyond-readings" of every axis that was measured over a part of its travel.
 std::vector<Finding> unmeasured_travel(const FitResult& result);
-/// What was identified and is in no table of linear axes: effects that act on no pose, errors of rotary axes.
-std::vector<Finding> errors_in_no_table(const FitResult& result);
+/// What was identified and is in no table of linear axes: effects that act on no pose, and the errors of
+/// these rotary axes (identified_rotary_axes()).
+std::vector<Finding> errors_in_no_table(const FitResult& result, std::span<const AxisName> rotary);
 /// "effect.in-no-figure" of effects that act on no pose: no error at a point or in the volume holds them.
 std::vector<Finding> effects_in_no_figure(const FitResult& result);
 

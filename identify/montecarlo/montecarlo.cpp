@@ -99,10 +99,7 @@ namespace {
 
 StatedOfStudy stated_of_study(const FitResult& result, const MonteCarloOptions& options) {
   const Conditions conditions = options.conditions ? *options.conditions : default_conditions(result);
-  StatedOfStudy stated{list_conditions(result, conditions), conditions_in_vain(result, conditions)};
-  std::erase_if(stated.conditions, [acting = conditions_that_act(result, conditions)](const auto& condition) {
-    return !acting.contains(condition.variable);
-  });
+  StatedOfStudy stated{acting_conditions(result, conditions), conditions_in_vain(result, conditions)};
   std::ranges::move(conditions_beyond_readings(result, conditions), std::back_inserter(stated.findings));
   return stated;
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "volcal/identify/program/quartic.h"
 #include "volcal/identify/program/sample_shares.h"
 
 namespace volcal {
@@ -31,17 +32,10 @@ double second_derivative_bound(const std::array<Eigen::Vector3d, 5>& f) {
   return kLebesgue * kPerStepSquared * std::max({begin.norm(), middle.norm(), end.norm()});
 }
 
-/// Of the quartic through five equidistant values.
 Eigen::Vector3d quartic_at(const std::array<Eigen::Vector3d, 5>& f, double share) {
+  const std::array<double, 5> weights = quartic_weights(share);
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < 5; ++i) {
-    double weight = 1.0;
-    for (std::size_t k = 0; k < 5; ++k) {
-      if (k != i)
-        weight *= (4.0 * share - static_cast<double>(k)) / (static_cast<double>(i) - static_cast<double>(k));
-    }
-    value += weight * f[i];
-  }
+  for (std::size_t i = 0; i < f.size(); ++i) value += weights[i] * f[i];
   return value;
 }
 

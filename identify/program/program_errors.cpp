@@ -10,6 +10,7 @@
 #include "volcal/identify/compensation/compensation.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/acting_conditions.h"
+#include "volcal/identify/program/quartic.h"
 #include "volcal/identify/program/sample_shares.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/parallel_axes.h"
@@ -139,17 +140,18 @@ class EffectIntervals {
         positions.push_back(position(place, begin + share * (end - begin)));
         directions.push_back(direction(place));
       };
-      for (const double node : kNodes) add(node);
+      for (const double node : kQuarticNodes) add(node);
       for (std::size_t c = 0; c < checks; ++c) add(sample_share(place * checks + c));
     }
     const Eigen::MatrixXd values = effects_.at(positions, directions);
     const Eigen::RowVectorXd allowed = (kSame * values.cwiseAbs().colwise().maxCoeff()).cwiseMax(kNothing);
     for (std::size_t place = first; place < last; ++place) {
-      const auto row = static_cast<Eigen::Index>((place - first) * (kNodes.size() + checks));
+      const auto row = static_cast<Eigen::Index>((place - first) * (kQuarticNodes.size() + checks));
       for (std::size_t c = 0; c < checks; ++c) {
+        const std::array<double, 5> weights = quartic_weights(sample_share(place * checks + c));
         const Eigen::RowVectorXd quartic =
-            weights(sample_share(place * checks + c)) * values.middleRows<kNodes.size()>(row);
-        const auto at = row + static_cast<Eigen::Index>(kNodes.size() + c);
+            Eigen::Map<const Eigen::Matrix<double, 1, 5>>(weights.data()) * values.middleRows<5>(row);
+        const auto at = row + static_cast<Eigen::Index>(kQuarticNodes.size() + c);
         if (((values.row(at) - quartic).cwiseAbs().array() > allowed.array()).any()) return false;
       }
     }
@@ -161,19 +163,6 @@ class EffectIntervals {
     constexpr double kBetween = 0.5e-3;  // m
     constexpr double kFewest = 4.0;
     return static_cast<std::size_t>(std::max(kFewest, std::ceil(length / (kBetween * kPlacesOfOthers))));
-  }
-
-  /// Of the values at kNodes in the quartic through them.
-  static Eigen::Matrix<double, 1, 5> weights(double share) {
-    Eigen::Matrix<double, 1, 5> weights;
-    for (std::size_t i = 0; i < kNodes.size(); ++i) {
-      double weight = 1.0;
-      for (std::size_t k = 0; k < kNodes.size(); ++k) {
-        if (k != i) weight *= (share - kNodes[k]) / (kNodes[i] - kNodes[k]);
-      }
-      weights[static_cast<Eigen::Index>(i)] = weight;
-    }
-    return weights;
   }
 
   AxisPosition position(std::size_t place, double of_axis) const {
@@ -199,7 +188,6 @@ class EffectIntervals {
     return direction;
   }
 
-  static constexpr std::array<double, 5> kNodes = {0.0, 0.25, 0.5, 0.75, 1.0};
   static constexpr std::size_t kPlacesOfOthers = 8;
   static constexpr std::size_t kMostIntervals = 100000;
   EffectsAlong effects_;

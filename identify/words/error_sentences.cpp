@@ -121,6 +121,14 @@ std::string rotary_tables_off_ideal(const Finding& finding) {
       finding.number("off").in_unit());
 }
 
+std::string tables_leave_more(const Finding& finding) {
+  return fmt::format(
+      "the machine errs by {:.2f} um RMS with these tables and by {:.2f} without: do not load them; take a "
+      "finer "
+      "--step, --positions or --rotary-step, a format that holds more positions, or fewer types",
+      finding.number("with").in_unit(), finding.number("without").in_unit());
+}
+
 std::string rotary_not_in_model(const Finding& finding) {
   const std::string& axis = finding.text("axis");
   return fmt::format(
@@ -160,6 +168,7 @@ std::span<const SentenceMaker> error_sentences() {
       {FindingCode::RotaryErrorsUnknownToTables, rotary_unknown_to_tables},
       {FindingCode::LeversOfTiltedHead, levers_of_tilted_head},
       {FindingCode::RotaryTablesOffIdeal, rotary_tables_off_ideal},
+      {FindingCode::TablesLeaveMore, tables_leave_more},
       {FindingCode::RotaryErrorsNotInModel, rotary_not_in_model},
       {FindingCode::RotaryHarmonicsHidden, harmonics_hidden},
   });

@@ -104,6 +104,7 @@ constexpr auto kFindingCodes = [] {
       {RotaryErrorsUnknownToTables, "errors.rotary-unknown-to-tables", Severity::Warning},
       {LeversOfTiltedHead, "compensation.levers-of-tilted-head", Severity::Warning},
       {RotaryTablesOffIdeal, "compensation.rotary-tables-off-ideal", Severity::Warning},
+      {TablesLeaveMore, "compensation.tables-leave-more", Severity::Failure},
       {RotaryErrorsNotInModel, "errors.rotary-not-in-model", Severity::Warning},
       {RotaryHarmonicsHidden, "errors.rotary-harmonics-hidden", Severity::Note},
   });

@@ -100,6 +100,7 @@ enum class FindingCode : std::uint8_t {
   RotaryErrorsUnknownToTables,
   LeversOfTiltedHead,
   RotaryTablesOffIdeal,
+  TablesLeaveMore,
   RotaryErrorsNotInModel,
   RotaryHarmonicsHidden,
   End,  ///< none: how many there are

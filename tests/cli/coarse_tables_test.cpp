@@ -28,10 +28,10 @@ TEST(CoarseTables, AreNotToBeLoaded) {
       << "[[effects]]\nkind = \"lead-error\"\nsymbol = \"EYX\"\nperiod_mm = 20\ncos_um = 5.0\nsin_um = 0.0\n";
   const std::string tables = "tables " + folder + "/m/screw.toml --dry-run --format ";
   const auto coarse = run_program(tables + "linuxcnc-grid --step 47");
-  EXPECT_THAT(coarse.output, HasSubstr("errs more with these tables than without: do not load them"));
-  EXPECT_EQ(nlohmann::json::parse(run_program(tables + "linuxcnc-grid --step 47 --json").output)
-                .at("more_than_without"),
-            true);
+  EXPECT_THAT(coarse.output, HasSubstr(" with these tables and by 3.53 without: do not load them"));
+  const nlohmann::json json =
+      nlohmann::json::parse(run_program(tables + "linuxcnc-grid --step 47 --json").output);
+  EXPECT_EQ(json.at("cautions_findings").at(0).at("code"), "compensation.tables-leave-more");
   const auto fine = run_program(tables + "csv --positions 601");
   EXPECT_THAT(fine.output, Not(HasSubstr("do not load")));
 }

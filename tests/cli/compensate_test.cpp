@@ -358,11 +358,6 @@ TEST_F(ProgramsOfWaves, KeepTheToleranceForWormsOfRotaryAxes) {
   std::ofstream(path("machine.toml")) << text;
   write_effect(
       "kind = \"worm-error\"\nsymbol = \"ECC\"\nperiod_deg = 4.0\ncos_urad = 60.0\nsin_urad = 0.0\n");
-  // C counts as identified.
-  std::string model = content(path("model.toml"));
-  model.insert(model.find("[[effects]]"),
-               "EAC = { basis = \"fourier\", degree = 1, coefficients_urad = [0, 0.001, 0.001] }\n");
-  std::ofstream(path("model.toml")) << model;
   std::ofstream(path("line.ngc"))
       << "G21 G90 G54 G17\nG43.4 H1\nG0 X0 Y0 Z0 B0 C0\nG1 X320 C32 F1000\nG49\nM2\n";
   const auto run = compensate("--tool-length H1=150 -o " + path("out.ngc"));

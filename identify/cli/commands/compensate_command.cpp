@@ -108,10 +108,11 @@ RewrittenProgram rewrite(const FitResult& result, const CompensateArguments& arg
   return done;
 }
 
-/// That is corrected while no tool length is active.
-std::string tool_without_length(const Machine& machine, const CompensateArguments& arguments) {
-  if (!arguments.tool.empty() || machine.tools.empty()) return arguments.tool;
-  return machine.tools.front().name;
+/// Of the tool that is corrected while no tool length is active.
+std::vector<Finding> of_tables(const FitResult& result, const CompensateArguments& arguments) {
+  const std::vector<Tool>& tools = result.machine.tools;
+  return findings_of_tables(result,
+                            {arguments.tool.empty() && !tools.empty() ? tools.front().name : arguments.tool});
 }
 
 void print_text(const RewrittenProgram& done, const FitResult& result, const CompensateArguments& arguments,
@@ -119,10 +120,9 @@ void print_text(const RewrittenProgram& done, const FitResult& result, const Com
   fmt::print("{}", program_summary_text(done.summary));
   if (done.check) fmt::print("{}", program_check_text(*done.check));
   fmt::print("{}", conditions_text(result, conditions));
-  fmt::print("{}", findings_text(errors_in_no_table(result)));
+  fmt::print("{}", findings_text(errors_in_no_table(result, identified_rotary_axes(result))));
   fmt::print("{}{}", findings_text(result.rank.invisible), findings_text(contradictions(result)));
-  fmt::print("{}",
-             findings_text(findings_of_tables(result, {tool_without_length(result.machine, arguments)})));
+  fmt::print("{}", findings_text(of_tables(result, arguments)));
   if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
 }
 
@@ -175,12 +175,7 @@ TcpSummary rewrite_tcp(const FitResult& result, const CompensateArguments& argum
 }
 
 /// Effects that no correction holds; errors of rotary axes are corrected here.
-std::vector<Finding> left_by_tcp(const FitResult& result) {
-  std::vector<Finding> findings = errors_in_no_table(result);
-  std::erase_if(findings,
-                [](const Finding& finding) { return finding.code == FindingCode::RotaryErrorsInNoTable; });
-  return findings;
-}
+std::vector<Finding> left_by_tcp(const FitResult& result) { return errors_in_no_table(result, {}); }
 
 int run_tcp(const FitResult& result, const CompensateArguments& arguments, const Conditions& conditions,
             TcpBegin begin) {
@@ -190,8 +185,7 @@ int run_tcp(const FitResult& result, const CompensateArguments& arguments, const
     add_findings("effects_not_compensated", left_by_tcp(result), json);
     json["conditions"] = conditions_json(result, conditions);
     add_findings("invisible", result.rank.invisible, json);
-    add_findings("of_tables", findings_of_tables(result, {tool_without_length(result.machine, arguments)}),
-                 json);
+    add_findings("of_tables", of_tables(result, arguments), json);
     add_findings("contradicted", contradictions(result), json);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));
@@ -199,8 +193,7 @@ int run_tcp(const FitResult& result, const CompensateArguments& arguments, const
     fmt::print("{}{}{}{}{}", tcp_summary_text(summary, arguments.check), conditions_text(result, conditions),
                findings_text(left_by_tcp(result)), findings_text(result.rank.invisible),
                findings_text(contradictions(result)));
-    fmt::print("{}",
-               findings_text(findings_of_tables(result, {tool_without_length(result.machine, arguments)})));
+    fmt::print("{}", findings_text(of_tables(result, arguments)));
     if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
@@ -219,11 +212,10 @@ int run_compensate(const CompensateArguments& arguments) {
   const RewrittenProgram done = rewrite(result, arguments, conditions);
   if (arguments.json) {
     nlohmann::ordered_json json = program_json(done.summary, done.check);
-    add_findings("effects_not_compensated", errors_in_no_table(result), json);
+    add_findings("effects_not_compensated", errors_in_no_table(result, identified_rotary_axes(result)), json);
     json["conditions"] = conditions_json(result, conditions);
     add_findings("invisible", result.rank.invisible, json);
-    add_findings("of_tables", findings_of_tables(result, {tool_without_length(result.machine, arguments)}),
-                 json);
+    add_findings("of_tables", of_tables(result, arguments), json);
     add_findings("contradicted", contradictions(result), json);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));

@@ -204,8 +204,7 @@ std::string spheres_introduced(const Structure& structure) {
           : "a whole turn of positions tells the axis from its errors");
 }
 
-/// Two places on the line of an axis, which tell tilts: along a table's line where a linear axis goes along
-/// it, otherwise two tools.
+/// Two tools, which tell tilts, and two places on the line of a table along which a linear axis goes.
 std::string rotation_measurement(const Structure& structure, AxisName axis) {
   const AxisName along = kLinearAxes[static_cast<std::size_t>(direction_of(axis))];
   const bool moves_along = is_on_workpiece_side(structure, axis) && has_axis(structure, along);
@@ -213,12 +212,10 @@ std::string rotation_measurement(const Structure& structure, AxisName axis) {
       "\n[[measurements]]  # axis of rotation, spheres at two places on its line (ISO 230-7)\n"
       "kind = \"axis-of-rotation\"\n"
       "axes = [\"{}\"]\n"
-      "{}\n"
+      "tools = [\"short\", \"long\"]\n"
+      "{}"
       "points = 36\n",
-      letter_of(axis),
-      moves_along
-          ? "tools = [\"short\", \"long\"]\nheights_mm = [0.0, 100.0]  # from centre_mm along the line"
-          : "tools = [\"short\", \"long\"]");
+      letter_of(axis), moves_along ? "heights_mm = [0.0, 100.0]  # from centre_mm along the line\n" : "");
 }
 
 /// Where a linear axis is missing: lengths to points of a plane leave its shape open, angles and a square of

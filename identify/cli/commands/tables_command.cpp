@@ -237,14 +237,6 @@ std::string step_text(const MadeTables& made) {
   return text;
 }
 
-/// Positions that are further apart than the errors change can add to them.
-bool leave_more_than_none(const MadeTables& made) {
-  constexpr double kNotable = 0.05e-6;  // m
-  const bool linear = made.check.exported.rms > made.check.before.rms + kNotable;
-  return linear ||
-         (made.rotary_check && made.rotary_check->exported.rms > made.rotary_check->before.rms + kNotable);
-}
-
 void print_tables(const MadeTables& made, const TablesArguments& arguments, const FitResult& result) {
   const Machine& machine = result.machine;
   fmt::print("{} {}, tool {}{}\n", made.format->name, made.options.type.name(),
@@ -262,14 +254,10 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
                limited ? limits_text(made.format->limits)
                        : std::string("give --step for a finer table, or --tolerance for a coarser one"));
   }
-  if (leave_more_than_none(made))
-    fmt::print(
-        "! the machine errs more with these tables than without: do not load them; take a finer --step, "
-        "--positions or --rotary-step, a format that holds more positions, or fewer types\n");
   if (!arguments.superimpose.empty())
     fmt::print("They replace {} and correct what it corrected too; before = with it.\n",
                arguments.superimpose);
-  fmt::print("{}", findings_text(made.effects_left_out));
+  fmt::print("{}{}", findings_text(made.effects_left_out), findings_text(made.cautions));
   fmt::print("{}", findings_text(unmeasured_travel(result)));
   fmt::print("{}: {}\n", arguments.dry_run ? "not written" : arguments.output,
              fmt::join(written_names(made, arguments), ", "));
@@ -286,8 +274,8 @@ nlohmann::ordered_json tables_json(const MadeTables& made, const TablesArguments
                                  {"verified", made.format->verified}};
   if (made.rotary_check) json["rotary_error_left"] = rotary_check_json(*made.rotary_check);
   if (made.all_axes) json["all_axes_error_left"] = all_axes_json(*made.all_axes);
-  json["more_than_without"] = leave_more_than_none(made);
   add_findings("effects_in_no_table", made.effects_left_out, json);
+  add_findings("cautions", made.cautions, json);
   if (!arguments.dry_run) json["folder"] = arguments.output;
   if (!arguments.certificate.campaign.empty()) json["certificate"] = kCertificatePage;
   if (!arguments.superimpose.empty()) json["superimposed_on"] = arguments.superimpose;

@@ -38,15 +38,13 @@ std::optional<AllAxesCheck> check_all_axes(const FitResult& result, const TableF
   const FiveAxisCompensation of_linear(machine, settings, of_linear_axes(all));
   TableFormatOptions whole = options;
   whole.type = CompensationType::volumetric();
+  whole.active.reset();
   const Compensation ideal = ideal_compensation(result, whole);
   const std::vector<AxisPosition> poses = poses_of_all_axes(machine, kAllAxesPoses);
   const auto none = [](const AxisPosition&) { return Correction{}; };
   const auto by_tables = [&](const AxisPosition& pose) {
     Correction correction = tables.correction(pose, {});
-    if (!options.active) return correction;
-    const Correction replaced = options.active->correction(pose, {});
-    correction.linear -= replaced.linear;
-    correction.rotary -= replaced.rotary;
+    if (options.active) correction.linear -= options.active->correction(pose, {}).linear;
     return correction;
   };
   const auto at_rest = [&](const AxisPosition& pose) {

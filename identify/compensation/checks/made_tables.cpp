@@ -10,13 +10,14 @@
 namespace volcal {
 namespace {
 
-constexpr double kNotableLever = 0.1e-6;  // m
-constexpr double kCoarseStep = 3.0;       // tolerances
+constexpr double kNotableLever = 0.1e-6;      // m
+constexpr double kNotableIncrease = 0.05e-6;  // m
+constexpr double kCoarseStep = 3.0;           // tolerances
 
 /// What was identified and is in none of these tables, or partly.
 std::vector<Finding> left_out_by(CompensationType type, const FitResult& result) {
   std::vector<Finding> findings;
-  for (const Finding& finding : errors_in_no_table(result)) {
+  for (const Finding& finding : errors_in_no_table(result, identified_rotary_axes(result))) {
     const bool of_rotary = finding.code == FindingCode::RotaryErrorsInNoTable;
     if (!of_rotary || type.rotary().empty()) {
       findings.push_back(finding);
@@ -25,13 +26,18 @@ std::vector<Finding> left_out_by(CompensationType type, const FitResult& result)
                           {{"axis", finding.text("axis")}, {"type", type.rotary().name()}}});
     }
   }
+  return findings;
+}
+
+FindingNumber in_micrometres(double metres) { return {metres, "um", kMetrePerMicrometre}; }
+
+void report_unknown_axes(const FitResult& result, std::vector<Finding>& cautions) {
   const std::vector<AxisName> identified = identified_rotary_axes(result);
   for (const Axis& axis : result.machine.axes) {
     if (is_rotary(axis.name) && std::ranges::find(identified, axis.name) == identified.end())
-      findings.push_back(
+      cautions.push_back(
           {FindingCode::RotaryErrorsUnknownToTables, {{"axis", std::string(1, letter_of(axis.name))}}});
   }
-  return findings;
 }
 
 void report_levers(const Machine& machine, MadeTables& made) {
@@ -41,20 +47,29 @@ void report_levers(const Machine& machine, MadeTables& made) {
   for (const Joint& joint : machine.structure.joints) {
     if (!joint.workpiece_side && is_rotary(joint.axis)) head += letter_of(joint.axis);
   }
-  const auto micrometres = [](double metres) { return FindingNumber{metres, "um", kMetrePerMicrometre}; };
-  made.effects_left_out.push_back({FindingCode::LeversOfTiltedHead,
-                                   {{"axes", head},
-                                    {"rms", micrometres(made.all_axes->levers.rms)},
-                                    {"max", micrometres(made.all_axes->levers.max)}}});
+  made.cautions.push_back({FindingCode::LeversOfTiltedHead,
+                           {{"axes", head},
+                            {"rms", in_micrometres(made.all_axes->levers.rms)},
+                            {"max", in_micrometres(made.all_axes->levers.max)}}});
 }
 
 /// Positions of rotary axes follow no tolerance.
 void report_rotary_step(MadeTables& made) {
   const double tolerance = made.tolerance > 0.0 ? made.tolerance : kDefaultTableTolerance;
   if (!made.rotary_check || made.rotary_check->deviation <= kCoarseStep * tolerance) return;
-  made.effects_left_out.push_back(
-      {FindingCode::RotaryTablesOffIdeal,
-       {{"off", FindingNumber{made.rotary_check->deviation, "um", kMetrePerMicrometre}}}});
+  made.cautions.push_back(
+      {FindingCode::RotaryTablesOffIdeal, {{"off", in_micrometres(made.rotary_check->deviation)}}});
+}
+
+/// Positions that are further apart than the errors change can add to them.
+void report_more_than_none(MadeTables& made) {
+  const auto report = [&made](double without, double with) {
+    if (with <= without + kNotableIncrease) return;
+    made.cautions.push_back({FindingCode::TablesLeaveMore,
+                             {{"without", in_micrometres(without)}, {"with", in_micrometres(with)}}});
+  };
+  report(made.check.before.rms, made.check.exported.rms);
+  if (made.rotary_check) report(made.rotary_check->before.rms, made.rotary_check->exported.rms);
 }
 
 }  // namespace
@@ -78,8 +93,10 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
   made.rotary_check = check_rotary_axes(format, result, made.options, made.read_back);
   made.all_axes = check_all_axes(result, made.options, made.read_back);
   made.effects_left_out = left_out_by(made.options.type, result);
+  report_unknown_axes(result, made.cautions);
   report_levers(result.machine, made);
   report_rotary_step(made);
+  report_more_than_none(made);
   return made;
 }
 

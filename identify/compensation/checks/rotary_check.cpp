@@ -10,16 +10,23 @@
 namespace volcal {
 namespace {
 
+using LeftAtPoses = std::vector<FiveAxisCompensation::Left>;
+
 template <class CorrectionAt>
-RotaryLeft left_under(const FiveAxisCompensation& ideal, const std::vector<AxisPosition>& poses,
-                      const CorrectionAt& correction_at) {
+LeftAtPoses left_under(const FiveAxisCompensation& ideal, const std::vector<AxisPosition>& poses,
+                       const CorrectionAt& correction_at) {
+  LeftAtPoses left;
+  for (const AxisPosition& pose : poses) left.push_back(ideal.left_by(correction_at(pose), pose));
+  return left;
+}
+
+RotaryLeft figures_of(const LeftAtPoses& errors) {
   RotaryLeft left;
-  for (const AxisPosition& pose : poses) {
-    const FiveAxisCompensation::Left error = ideal.left_by(correction_at(pose), pose);
+  for (const FiveAxisCompensation::Left& error : errors) {
     const double point = error.displacement_w.norm();
-    left.rms += point * point / static_cast<double>(poses.size());
+    left.rms += point * point / static_cast<double>(errors.size());
     left.max = std::max(left.max, point);
-    left.axis_rms += error.axis * error.axis / static_cast<double>(poses.size());
+    left.axis_rms += error.axis * error.axis / static_cast<double>(errors.size());
   }
   left.rms = std::sqrt(left.rms);
   left.axis_rms = std::sqrt(left.axis_rms);
@@ -80,15 +87,15 @@ std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const Fi
   const RotaryJudgement judgement(format, result, options, tables);
   const FiveAxisCompensation& ideal = judgement.ideal();
   const std::vector<AxisPosition> poses = poses_of_all_axes(result.machine, kRotaryCheckPoses);
-  const auto by_ideal = [&](const AxisPosition& pose) { return ideal.correction(pose); };
-  const auto by_tables = [&](const AxisPosition& pose) { return judgement.by_tables(pose); };
-  RotaryCheck check{left_under(ideal, poses, [](const AxisPosition&) { return Correction{}; }),
-                    left_under(ideal, poses, by_ideal), left_under(ideal, poses, by_tables)};
-  for (const AxisPosition& pose : poses) {
-    const Eigen::Vector3d off_w = ideal.left_by(by_tables(pose), pose).displacement_w -
-                                  ideal.left_by(by_ideal(pose), pose).displacement_w;
-    check.deviation = std::max(check.deviation, off_w.norm());
-  }
+  const LeftAtPoses before = left_under(ideal, poses, [](const AxisPosition&) { return Correction{}; });
+  const LeftAtPoses by_ideal =
+      left_under(ideal, poses, [&](const AxisPosition& pose) { return ideal.correction(pose); });
+  const LeftAtPoses by_tables =
+      left_under(ideal, poses, [&](const AxisPosition& pose) { return judgement.by_tables(pose); });
+  RotaryCheck check{figures_of(before), figures_of(by_ideal), figures_of(by_tables)};
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    check.deviation =
+        std::max(check.deviation, (by_tables[i].displacement_w - by_ideal[i].displacement_w).norm());
   return check;
 }
 

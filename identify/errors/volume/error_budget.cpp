@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "volcal/identify/errors/error_grid.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/errors/volume/faded_in_volume.h"
 #include "volcal/identify/errors/volume/volume_moments.h"
 #include "volcal/identify/errors/volume/volumetric.h"
@@ -61,14 +62,6 @@ std::vector<AxisPosition> with_parallel_positions(const Machine& machine, int pe
   return positions;
 }
 
-/// The axis of an error of a rotary axis.
-std::optional<AxisName> rotary_axis_of(const Contribution& part) {
-  if (const auto symbol = ErrorSymbol::parse(part.name); symbol && is_rotary(symbol->axis))
-    return symbol->axis;
-  const auto location = LocationSymbol::parse(part.name);
-  return location && is_rotary(location->axis) ? std::optional(location->axis) : std::nullopt;
-}
-
 /// Positions of rotary axes, one set after another, spread evenly and without a period in common with a grid
 /// of other axes: multiples of powers of the inverse of the root of x^7 = x + 1, less whole numbers (additive
 /// recurrence). Every axis is approached from either side as often.
@@ -117,7 +110,8 @@ class VolumeOfParts {
         parts_(field_.contributions()),
         chain_(result.machine),
         offset_t_(tool.offset),
-        turned_(result.machine, rotary == RotaryPoses::AtRest ? std::vector<AxisName>() : with_errors()) {
+        turned_(result.machine,
+                rotary == RotaryPoses::AtRest ? std::vector<AxisName>() : identified_rotary_axes(result)) {
     fields_.resize(parts_.size());
     VolumeMoments moments(result.parameters.size());
     std::vector<AxisName> axes(kLinearAxes.begin(), kLinearAxes.end());
@@ -142,9 +136,10 @@ class VolumeOfParts {
 
   /// Root mean square of the standard uncertainty of what these parameters make together.
   double u_rms(const std::vector<int>& parameters) const {
-    if (!is_uncertain_ || parameters.empty()) return 0.0;
-    const Eigen::MatrixXd covariance = result_.covariance(parameters, parameters);
-    const double known = covariance.cwiseProduct(moments_(parameters, parameters)).sum();
+    if (parameters.empty()) return 0.0;
+    double known = 0.0;
+    if (is_uncertain_)
+      known = result_.covariance(parameters, parameters).cwiseProduct(moments_(parameters, parameters)).sum();
     return std::sqrt(std::max(0.0, known + faded_.mean_square(parameters)));
   }
   /// Of the mean square, by independent standard normal variables squared.
@@ -155,16 +150,6 @@ class VolumeOfParts {
   }
 
  private:
-  std::vector<AxisName> with_errors() const {
-    std::vector<AxisName> axes;
-    for (const Contribution& part : parts_) {
-      const auto axis = rotary_axis_of(part);
-      if (axis && std::ranges::find(axes, *axis) == axes.end()) axes.push_back(*axis);
-    }
-    std::ranges::sort(axes);
-    return axes;
-  }
-
   void add(const AxisPosition& position, const ApproachDirection& direction, VolumeMoments& moments) {
     if (turned().empty()) {
       points_.emplace_back(position[0], position[1], position[2]);
@@ -180,8 +165,7 @@ class VolumeOfParts {
         displacement += rows.col(parameter) * result_.parameters[parameter];
       fields_[p].push_back(displacement);
     }
-    if (!is_uncertain_) return;
-    moments.add(points_.back(), field_.unheld_rows(position, direction).topRows<3>());
+    if (is_uncertain_) moments.add(points_.back(), field_.unheld_rows(position, direction).topRows<3>());
     faded_.add(points_.back(), field_.faded_errors(position, direction));
   }
 

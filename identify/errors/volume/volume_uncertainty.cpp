@@ -26,17 +26,18 @@ double volume_uncertainty(const FitResult& result, const Tool& tool, const Condi
                           std::span<const ApproachDirection> directions) {
   if (positions.size() != directions.size())
     throw std::invalid_argument("as many positions as directions are needed");
-  if (result.covariance.isZero(0.0)) return 0.0;
+  const bool is_uncertain = !result.covariance.isZero(0.0);
   const ErrorField field(result, tool, conditions);
   const Eigen::Vector3d movable = movable_of(result.machine);
   VolumeMoments moments(result.layout.size);
   FadedInVolume faded;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Eigen::Vector3d place(positions[i][0], positions[i][1], positions[i][2]);
-    moments.add(place, movable.asDiagonal() * field.unheld_rows(positions[i], directions[i]).topRows<3>());
+    if (is_uncertain)
+      moments.add(place, movable.asDiagonal() * field.unheld_rows(positions[i], directions[i]).topRows<3>());
     faded.add(place, field.faded_errors(positions[i], directions[i]), movable);
   }
-  const double known = moments.mean().cwiseProduct(result.covariance).sum();
+  const double known = is_uncertain ? moments.mean().cwiseProduct(result.covariance).sum() : 0.0;
   return std::sqrt(std::max(0.0, known + faded.mean_square()));
 }
 

@@ -10,7 +10,7 @@ namespace volcal {
 /// sqrt(mean |u|^2) over poses of the standard uncertainty of the displacement as identified, after the best
 /// rigid motion (volume_moments.h), m. Where tables take away what was identified, errors of this size
 /// remain. Beyond the readings the functions themselves count, not their held value, and of curves and
-/// surfaces what has faded out (faded_in_volume.h). 0 for errors that are stated without uncertainty.
+/// surfaces what has faded out (faded_in_volume.h). Of errors that are stated without uncertainty that alone.
 /// `positions` and `directions` belong together; rotary axes at 0; axes that the
 /// machine lacks are left out.
 double volume_uncertainty(const FitResult& result, const Tool& tool, const Conditions& conditions,

@@ -33,7 +33,7 @@ MadeTables tables_of(const FitResult& result, const std::string& name, const Com
 }
 
 bool is_said(const MadeTables& made, FindingCode code) {
-  return std::ranges::find(made.effects_left_out, code, &Finding::code) != made.effects_left_out.end();
+  return std::ranges::find(made.cautions, code, &Finding::code) != made.cautions.end();
 }
 
 /// A roll EAX(x) turns the tool vector t of a head about x by EAX: (0, -t_z, t_y) EAX. With the head at A it
@@ -60,6 +60,27 @@ TEST(TablesOfAHead, LeaveTheLeverOfItsTilt) {
   EXPECT_NEAR(made.all_axes->exported.rms, expected.rms, 0.02 * expected.rms);
   EXPECT_LT(made.check.exported.rms, 0.05e-6);
   EXPECT_TRUE(is_said(made, FindingCode::LeversOfTiltedHead));
+}
+
+/// Tables that were active are in what was identified, and are taken away with it: the lever is that of the
+/// roll.
+TEST(TablesOfAHead, LeaveTheSameLeverInPlaceOfOthers) {
+  const auto roll = [](double q) { return 40e-6 * q / 0.6; };
+  const FitResult result =
+      testing::result_with(testing::rotary_machine("w b X Y Z A t"), {.functions = {{"EAX", roll}}}, 6);
+  const TableFormat& format = *find_table_format("neutral-csv");
+  TableFormatOptions options;
+  options.type = CompensationType::volumetric();
+  options.step = 0.05;
+  const AllAxesCheck alone = *make_tables(format, result, options).all_axes;
+  options.active.emplace();
+  options.active->terms.push_back(axis_term(
+      AxisName::X,
+      {.input = AxisName::X, .position = {-0.3, 0.3}, .forward = {-6e-6, 6e-6}, .backward = {-6e-6, 6e-6}}));
+  const AllAxesCheck beside = *make_tables(format, result, options).all_axes;
+  EXPECT_NEAR(beside.levers.rms, alone.levers.rms, 1e-12);
+  EXPECT_NEAR(beside.before.rms, alone.before.rms, 1e-12) << "the machine as it was measured";
+  EXPECT_NEAR(beside.exported.rms, alone.exported.rms, 0.01e-6);
 }
 
 TEST(TablesOfATable, HaveNoLeverThatTurns) {
@@ -136,6 +157,25 @@ TEST(IdentifiedRotaryAxes, HaveEffectsToo) {
   AxisPosition turned{};
   turned[index_of(AxisName::C)] = 1.0;
   EXPECT_NO_THROW(require_identified_rotary_axes(result, turned));
+  const MadeTables linear = tables_of(result, "csv", CompensationType::volumetric());
+  ASSERT_EQ(linear.effects_left_out.size(), 1U) << "said where the type has nothing of C";
+  EXPECT_EQ(linear.effects_left_out[0].code, FindingCode::RotaryErrorsInNoTable);
+}
+
+/// Straightness with the pitch of a screw, sampled further apart than it changes.
+TEST(CautionsOfTables, SayWhereTheyLeaveMore) {
+  const FitResult result = stated(effect_spec(
+      "lead-error", {{"symbol", std::string("EYX")}, {"period", 20e-3}, {"cos", 5e-6}, {"sin", 0.0}}));
+  TableFormatOptions options;
+  options.step = 47e-3;
+  const MadeTables coarse = make_tables(*find_table_format("neutral-csv"), result, options);
+  EXPECT_GT(coarse.check.exported.rms, coarse.check.before.rms);
+  EXPECT_TRUE(is_said(coarse, FindingCode::TablesLeaveMore));
+  options.step = 2e-3;
+  options.type = CompensationPart::Straightness;
+  const MadeTables fine = make_tables(*find_table_format("neutral-csv"), result, options);
+  EXPECT_LT(fine.check.exported.rms, 0.2e-6);
+  EXPECT_FALSE(is_said(fine, FindingCode::TablesLeaveMore));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "tests/support/effect_campaign.h"
@@ -13,6 +14,7 @@
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/identify/errors/volume/faded_in_volume.h"
+#include "volcal/identify/errors/volume/volume_uncertainty.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/functions/tensor_basis.h"
@@ -22,25 +24,25 @@ namespace {
 
 constexpr double kHeight = 7e-6, kU = 1e-6;  // m
 
-/// EXX = 7 um from 18 to 26 degC in two pieces of 4 K, every coefficient with a standard uncertainty of 1 um
-/// of its own: u is 1 um at the ends, where one spline alone is not zero.
+/// A constant curve by temperature from 18 to 26 degC in two pieces of 4 K, every coefficient with a standard
+/// uncertainty of its own: u is theirs at the ends, where one spline alone is not zero.
+FitResult result_of_curve(const std::string& target, double height, double u) {
+  ModelSpec model;
+  model.default_function.basis = "zero";
+  model.effects = {effect_spec("empirical", {{"target", target},
+                                             {"drivers", std::string("T_spindle")},
+                                             {"from", std::vector<double>{18.0}},
+                                             {"to", std::vector<double>{26.0}},
+                                             {"pieces", std::vector<double>{2.0}},
+                                             {"coefficients", std::vector<double>(5, height)}})};
+  model.conditions.temperature_degC["spindle"] = {18.0, 21.0, 26.0};
+  FitResult result = stated_result(testing_support::effect_campaign().machine, model);
+  if (u > 0.0) result.covariance = u * u * Eigen::MatrixXd::Identity(result.layout.size, result.layout.size);
+  return result;
+}
+
 class BeyondConditions : public ::testing::Test {
  protected:
-  BeyondConditions() {
-    ModelSpec model;
-    model.default_function.basis = "zero";
-    model.effects = {effect_spec("empirical", {{"target", std::string("EXX")},
-                                               {"drivers", std::string("T_spindle")},
-                                               {"from", std::vector<double>{18.0}},
-                                               {"to", std::vector<double>{26.0}},
-                                               {"pieces", std::vector<double>{2.0}},
-                                               {"coefficients", std::vector<double>(5, kHeight)}})};
-    model.conditions.temperature_degC["spindle"] = {18.0, 21.0, 26.0};
-    result_ = stated_result(testing_support::effect_campaign().machine, model);
-    result_.covariance.setIdentity(result_.layout.size, result_.layout.size);
-    result_.covariance *= kU * kU;
-  }
-
   VolumetricError at(double temperature_degC) const {
     const Tool& tool = result_.machine.tools.front();
     const ErrorField field(result_, tool, conditions(temperature_degC));
@@ -53,7 +55,7 @@ class BeyondConditions : public ::testing::Test {
     return conditions;
   }
 
-  FitResult result_;
+  FitResult result_ = result_of_curve("EXX", kHeight, kU);
 };
 
 TEST_F(BeyondConditions, ACurveHoldsWithinItsReadings) {
@@ -114,33 +116,41 @@ TEST_F(BeyondConditions, AShiftLeavesNothingInTheVolume) {
   EXPECT_NEAR(budget.total.u_rms, 0.0, 1e-12);
 }
 
+double u_in_volume(const FitResult& result, double temperature_degC) {
+  Conditions conditions;
+  conditions.temperature_degC["spindle"] = temperature_degC;
+  return error_budget(result, result.machine.tools.front(), conditions, 3).total.u_rms;
+}
+
 /// 7 urad of EBY, gone at 40 degC, turn what Y carries; what they may still be, beside the u of the last
 /// coefficient, is sqrt(7^2 + 1) times what 1 urad leaves after a rigid motion.
 TEST(FadedInVolume, IsAsACovarianceOfItsSize) {
-  const auto made = [](const std::string& target, double coefficient, double u) {
-    ModelSpec model;
-    model.default_function.basis = "zero";
-    model.effects = {effect_spec("empirical", {{"target", target},
-                                               {"drivers", std::string("T_spindle")},
-                                               {"from", std::vector<double>{18.0}},
-                                               {"to", std::vector<double>{26.0}},
-                                               {"pieces", std::vector<double>{2.0}},
-                                               {"coefficients", std::vector<double>(5, coefficient)}})};
-    model.conditions.temperature_degC["spindle"] = {18.0, 21.0, 26.0};
-    FitResult result = stated_result(testing_support::effect_campaign().machine, model);
-    result.covariance.setIdentity(result.layout.size, result.layout.size);
-    result.covariance *= u * u;
-    return result;
-  };
-  const auto u_of = [](const FitResult& result, double temperature_degC) {
-    Conditions conditions;
-    conditions.temperature_degC["spindle"] = temperature_degC;
-    return error_budget(result, result.machine.tools.front(), conditions, 3).total.u_rms;
-  };
-  const FitResult faded = made("EBY", 7e-6, 1e-6);
-  const double inside = u_of(faded, 26.0);  // the last spline alone: 1 urad
+  const FitResult faded = result_of_curve("EBY", 7e-6, 1e-6);
+  const double inside = u_in_volume(faded, 26.0);  // the last spline alone: 1 urad
   ASSERT_GT(inside, 1e-8);
-  EXPECT_NEAR(u_of(faded, 40.0), std::sqrt(50.0) * inside, 1e-6 * inside);
+  EXPECT_NEAR(u_in_volume(faded, 40.0), std::sqrt(50.0) * inside, 1e-6 * inside);
+  const FitResult stated = result_of_curve("EBY", 7e-6, 0.0);
+  EXPECT_EQ(u_in_volume(stated, 26.0), 0.0);
+  EXPECT_NEAR(u_in_volume(stated, 40.0), 7.0 * inside, 1e-6 * inside) << "of errors without uncertainty, too";
+}
+
+/// Tables that take away what was identified leave it as well.
+TEST(FadedInVolume, IsLeftByTables) {
+  const FitResult stated = result_of_curve("EBY", 7e-6, 0.0);
+  std::vector<AxisPosition> positions;
+  for (const double y : {0.0, 0.25, 0.5}) {
+    for (const double z : {0.0, 0.3}) positions.push_back({0.1, y, z});
+  }
+  const std::vector<ApproachDirection> directions(positions.size());
+  Conditions warm, hot;
+  warm.temperature_degC["spindle"] = 26.0;
+  hot.temperature_degC["spindle"] = 40.0;
+  const Tool& tool = stated.machine.tools.front();
+  EXPECT_EQ(volume_uncertainty(stated, tool, warm, positions, directions), 0.0);
+  const FitResult known = result_of_curve("EBY", 7e-6, 7e-6);
+  const double of_seven = volume_uncertainty(known, tool, warm, positions, directions);
+  ASSERT_GT(of_seven, 1e-8);
+  EXPECT_NEAR(volume_uncertainty(stated, tool, hot, positions, directions), of_seven, 1e-6 * of_seven);
 }
 
 /// Of a surface that depends on a position the shift counts too: of 2 um at one of two points and 0 at the
@@ -158,6 +168,10 @@ TEST(FadedInVolume, CountsWhatChangesFromPointToPointAsItIs) {
   same.add({0.0, 0.0, 0.0}, {&two, 1});
   same.add({1.0, 0.0, 0.0}, {&two, 1});
   EXPECT_NEAR(same.mean_square(), 0.0, 1e-20);
+  FadedInVolume across;
+  across.add({0.0, 0.0, 0.0}, {&two, 1}, {0.0, 1.0, 1.0});
+  across.add({1.0, 0.0, 0.0}, {&none, 1}, {0.0, 1.0, 1.0});
+  EXPECT_EQ(across.mean_square(), 0.0) << "no axis moves along x";
 }
 
 TEST_F(BeyondConditions, TheErrorDependsOnTheTemperatureThatHidesIt) {

@@ -105,6 +105,23 @@ TEST(ErrorBudget, IsOverTheTravelOfRotaryAxesWithErrors) {
   EXPECT_LT(at_rest.total.rms, 1e-12);
 }
 
+/// The same by an effect alone, a worm of three teeth.
+TEST(ErrorBudget, IsOverTheTravelOfRotaryAxesWithEffects) {
+  constexpr double kHalfTravel = 0.3, kAngle = 20e-6;
+  ModelSpec model;
+  model.default_function.basis = "zero";
+  model.effects = {effect_spec("worm-error", {{"symbol", std::string("ECC")},
+                                              {"period", 2.0 * std::numbers::pi / 3.0},
+                                              {"cos", 0.0},
+                                              {"sin", kAngle}})};
+  const FitResult result = stated_result(machine_with_table(kHalfTravel), model);
+  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
+  EXPECT_EQ(budget.turned, std::vector{AxisName::C});
+  EXPECT_TRUE(budget.at_rest.empty());
+  const double expected = kAngle * kHalfTravel / std::sqrt(2.0);
+  EXPECT_NEAR(budget.total.rms, expected, 0.03 * expected);
+}
+
 /// A reversal of the table's angle is +-b/2, as often either way.
 TEST(ErrorBudget, ApproachesRotaryAxesFromBothSides) {
   constexpr double kHalfTravel = 0.3, kJump = 10e-6;

@@ -51,6 +51,19 @@ TEST(WithoutRigidMotion, PointsOnALine) {
   EXPECT_LT((left[1] - 1e-6 * Vector3d(1, 0, 0)).norm(), 1e-18);
 }
 
+/// The motion of the first two points, a shift of 2 um along x, is taken from the third as well, which has 5
+/// um.
+TEST(WithoutRigidMotion, IsThatOfTheFirstPoints) {
+  const std::vector<Vector3d> points = {{0, 0, 0}, {1, 0, 0}, {7, 0, 0}};
+  const std::vector<Vector3d> errors = {1e-6 * Vector3d(2, 0, 0), 1e-6 * Vector3d(2, 0, 0),
+                                        1e-6 * Vector3d(5, 0, 0)};
+  const auto left = without_rigid_motion(points, errors, 2);
+  EXPECT_LT(left[0].norm(), 1e-18);
+  EXPECT_LT(left[1].norm(), 1e-18);
+  EXPECT_LT((left[2] - 1e-6 * Vector3d(3, 0, 0)).norm(), 1e-18);
+  EXPECT_THROW(without_rigid_motion(points, errors, 4), std::invalid_argument);
+}
+
 TEST(WithoutRigidMotion, RefusesListsOfDifferentLength) {
   EXPECT_THROW(without_rigid_motion(std::vector<Vector3d>(2), std::vector<Vector3d>(3)),
                std::invalid_argument);

@@ -8,6 +8,7 @@
 
 #include "tests/support/machines.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/solve/rank.h"
 
 namespace volcal {
 namespace {
@@ -96,6 +97,30 @@ TEST(WidePrior, WidthIsThatOfTheModel) {
   EXPECT_NEAR(u_of_unseen(wider), 5e-2, 5e-4) << "what no reading sees is as uncertain as the model says";
   model.priors.squareness = 3e-4;  // twice u
   EXPECT_FALSE(figure_with_prior(fit(printed_square(10e-6), model), "EC0Y").visible);
+}
+
+GaussianPrior metre_prior(int size) {
+  GaussianPrior prior = GaussianPrior::none(size);
+  prior.precision.setIdentity();
+  return prior;
+}
+
+/// Two parameters of which readings of 1e-9 m see the sum alone: of a prior of 1 m nothing is left in the
+/// difference beside 1e18, so that both are held to 1e-12 of that, 1 mm.
+TEST(AboveRounding, HoldsWhatIsOneToPreciseReadings) {
+  const Eigen::Matrix2d one = 1e18 * Eigen::Matrix2d::Ones();
+  const GaussianPrior held = above_rounding(one, metre_prior(2));
+  EXPECT_NEAR(held.precision(0, 0), 1e6, 1.0);
+  EXPECT_NEAR(held.precision(1, 1), 1e6, 1.0);
+  EXPECT_EQ(held.precision(0, 1), 0.0);
+}
+
+TEST(AboveRounding, LeavesWhatReadingsTellApartOrHardlySee) {
+  Eigen::Matrix2d apart;
+  apart << 1e18, 0.5e18, 0.5e18, 1e18;
+  EXPECT_TRUE(above_rounding(apart, metre_prior(2)).precision.isIdentity(0.0));
+  EXPECT_TRUE(above_rounding(1e6 * Eigen::Matrix2d::Ones(), metre_prior(2)).precision.isIdentity(0.0));
+  EXPECT_EQ(above_rounding(Eigen::MatrixXd(0, 0), metre_prior(0)).precision.size(), 0);
 }
 
 }  // namespace

@@ -635,6 +635,11 @@ const std::vector<WordedFinding>& examples() {
        "tables of rotary axes are up to 12.30 um off what their types could correct: what changes within one "
        "of "
        "their steps, as the errors of a worm, needs a finer --rotary-step"},
+      {{FindingCode::TablesLeaveMore,
+        {{"with", FindingNumber{4.26e-6, "um", 1e-6}}, {"without", FindingNumber{3.53e-6, "um", 1e-6}}}},
+       "the machine errs by 4.26 um RMS with these tables and by 3.53 without: do not load them; take a "
+       "finer "
+       "--step, --positions or --rotary-step, a format that holds more positions, or fewer types"},
       {{FindingCode::RotaryErrorsNotInModel, {{"axis", "C"}, {"in_uncertainty", true}}},
        "axis C moves in these readings, and the model has no errors of it: what they do is in the residuals, "
        "what they may be by their prior in the uncertainty of the model; identify them by volcal fit from "

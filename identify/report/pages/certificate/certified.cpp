@@ -139,7 +139,8 @@ Json certified_reservations(const CertificateView& certificate) {
   Json list = Json::array();
   if (result.status != FitStatus::Ok)
     list.push_back(fmt::format("The identification ended with status {}.", to_string(result.status)));
-  for (const auto* findings : {&result.rank.invisible, &certificate.tables.effects_left_out}) {
+  for (const auto* findings :
+       {&result.rank.invisible, &certificate.tables.effects_left_out, &certificate.tables.cautions}) {
     for (const std::string& text : sentences(*findings)) list.push_back(text);
   }
   for (const std::string& text : sentences(unmeasured_travel(result))) list.push_back(text);

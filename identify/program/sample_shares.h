@@ -15,8 +15,8 @@ struct WeightedShare {
   double weight = 0.0;
 };
 
-/// To integrate by: three Gauss points in each of `parts` parts of about the same length. Weights add up
-/// to 1.
+/// To integrate by: three Gauss points in each of `parts` parts, which are uneven, none longer than
+/// 1.75 of the mean. Weights add up to 1.
 void weighted_shares(std::size_t parts, std::vector<WeightedShare>& shares);
 
 /// Parts for a length, m, about a millimetre each.

@@ -142,14 +142,23 @@ class VolumeOfParts {
       known = result_.covariance(parameters, parameters).cwiseProduct(moments_(parameters, parameters)).sum();
     return std::sqrt(std::max(0.0, known + faded_.mean_square(parameters)));
   }
-  /// Of the mean square, by independent standard normal variables squared.
+  /// Of the mean square, by independent standard normal variables squared: one for each curve or surface that
+  /// has faded out, beside those of the covariance.
   Eigen::VectorXd weights(const std::vector<int>& parameters) const {
+    const std::vector<double> faded = faded_.mean_squares(parameters);
+    const Eigen::VectorXd known = is_uncertain_ ? known_weights(parameters) : Eigen::VectorXd();
+    Eigen::VectorXd all(known.size() + static_cast<Eigen::Index>(faded.size()));
+    all << known, Eigen::Map<const Eigen::VectorXd>(faded.data(), static_cast<Eigen::Index>(faded.size()));
+    return all;
+  }
+
+ private:
+  Eigen::VectorXd known_weights(const std::vector<int>& parameters) const {
     const SymmetricEigen moments = eigen_decomposition(moments_(parameters, parameters));
     const Eigen::MatrixXd root = moments.vectors * moments.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
     return eigenvalues(root.transpose() * result_.covariance(parameters, parameters) * root).cwiseMax(0.0);
   }
 
- private:
   void add(const AxisPosition& position, const ApproachDirection& direction, VolumeMoments& moments) {
     if (turned().empty()) {
       points_.emplace_back(position[0], position[1], position[2]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "volcal/identify/errors/volume/volumetric.h"
 
@@ -32,11 +33,17 @@ double FadedInVolume::mean_square() const {
 }
 
 double FadedInVolume::mean_square(std::span<const int> parameters) const {
-  double sum = 0.0;
+  const std::vector<double> squares = mean_squares(parameters);
+  return std::accumulate(squares.begin(), squares.end(), 0.0);
+}
+
+std::vector<double> FadedInVolume::mean_squares(std::span<const int> parameters) const {
+  std::vector<double> squares;
   for (const auto& [parameter, surface] : surfaces_) {
-    if (std::ranges::find(parameters, parameter) != parameters.end()) sum += mean_square_of(surface);
+    if (std::ranges::find(parameters, parameter) != parameters.end())
+      squares.push_back(mean_square_of(surface));
   }
-  return sum;
+  return squares;
 }
 
 double FadedInVolume::mean_square_of(const Surface& surface) const {

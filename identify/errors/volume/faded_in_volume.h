@@ -24,6 +24,8 @@ class FadedInVolume {
   double mean_square() const;
   /// Of those whose first coefficient is among `parameters`.
   double mean_square(std::span<const int> parameters) const;
+  /// Of each of them.
+  std::vector<double> mean_squares(std::span<const int> parameters) const;
 
  private:
   struct Surface {

@@ -134,12 +134,23 @@ TEST(FadedInVolume, IsAsACovarianceOfItsSize) {
   EXPECT_NEAR(u_in_volume(stated, 40.0), 7.0 * inside, 1e-6 * inside) << "of errors without uncertainty, too";
 }
 
+/// Nothing is left of the values, so the budget states what is exceeded with 5 %: of one normal variable 1.96
+/// of its standard deviation.
+TEST(FadedInVolume, IsExceededByFivePercentOfMachines) {
+  Conditions hot;
+  hot.temperature_degC["spindle"] = 40.0;
+  const FitResult stated = result_of_curve("EBY", 7e-6, 0.0);
+  const ErrorBudget budget = error_budget(stated, stated.machine.tools.front(), hot, 3);
+  ASSERT_EQ(budget.total.rms, 0.0);
+  EXPECT_NEAR(budget.rms_95, 1.959964 * budget.total.u_rms, 0.01 * budget.rms_95);
+}
+
 /// Tables that take away what was identified leave it as well.
 TEST(FadedInVolume, IsLeftByTables) {
   const FitResult stated = result_of_curve("EBY", 7e-6, 0.0);
   std::vector<AxisPosition> positions;
-  for (const double y : {0.0, 0.25, 0.5}) {
-    for (const double z : {0.0, 0.3}) positions.push_back({0.1, y, z});
+  for (const double x : {0.0, 0.4}) {
+    for (const double z : {0.0, 0.3}) positions.insert(positions.end(), {{x, 0.0, z}, {x, 0.5, z}});
   }
   const std::vector<ApproachDirection> directions(positions.size());
   Conditions warm, hot;

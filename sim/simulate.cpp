@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "volcal/model/description/errors.h"
-#include "volcal/sim/known_errors.h"
+#include "volcal/sim/known/known_errors.h"
 #include "volcal/sim/machine/random.h"
 #include "volcal/sim/measurement/instruments.h"
 #include "volcal/sim/measurement/paths.h"

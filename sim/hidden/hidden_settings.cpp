@@ -4,6 +4,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "volcal/model/description/variable.h"
+
 namespace volcal::sim {
 namespace {
 
@@ -66,6 +68,10 @@ std::string HiddenSettings::required_text(const std::string& stem) const {
   const auto value = effect_.options.text(stem);
   if (!value) fail("\"" + stem + "\" is missing", "state it");
   return *value;
+}
+
+std::vector<double> HiddenSettings::numbers(const std::string& stem) const {
+  return effect_.options.numbers(stem).value_or(std::vector<double>{});
 }
 
 ErrorSymbol HiddenSettings::symbol() const {
@@ -168,6 +174,21 @@ StateNumber HiddenSettings::excess_temperature(const std::string& stem) const {
     if (found == state.temperature.end()) throw std::invalid_argument("no temperature of channel " + name);
     return found->second - kReferenceTemperature;
   };
+}
+
+StateNumber HiddenSettings::written_temperature(const std::string& written) const {
+  for (const TemperatureChannel& channel : context_.environment.channels) {
+    if (channel_variable(channel.name) != written) continue;
+    return [name = channel.name](const MachineState& state) { return state.temperature.at(name); };
+  }
+  fail("the study does not simulate the temperature " + written, "add a [[temperatures]] table");
+}
+
+OccasionTest HiddenSettings::at_station(const std::string& station) const {
+  const bool exists =
+      std::ranges::any_of(context_.plans, [&](const SetupPlan& plan) { return station_of(plan) == station; });
+  if (!exists) fail("no setup has the station \"" + station + "\"", "use a name that the campaign will have");
+  return [station](const Occasion& occasion) { return station_of(occasion.plan) == station; };
 }
 
 OccasionTest HiddenSettings::where() const {

@@ -31,6 +31,7 @@ class HiddenSettings {
   Eigen::Vector3d direction(const Eigen::Vector3d& otherwise) const;  ///< unit vector
   Eigen::Vector3d vector(const std::string& stem, const Eigen::Vector3d& otherwise) const;
   std::string text(const std::string& stem, const std::string& otherwise) const;
+  std::vector<double> numbers(const std::string& stem) const;  ///< none where the key is absent
 
   ErrorSymbol symbol() const;
   LocationSymbol location_symbol() const;  ///< squareness of the datum, or of a rotary axis
@@ -47,8 +48,14 @@ class HiddenSettings {
   StateNumber share(AxisName axis) const;                         ///< u
   StateNumber share_or_one(const std::string& stem) const;        ///< 1 when the key is absent
   StateNumber excess_temperature(const std::string& stem) const;  ///< dT
+  /// degC, of the channel that expressions write so: "T_air"
+  StateNumber written_temperature(const std::string& written) const;
   const TemperatureChannel& channel(const std::string& stem) const;
 
+  const Machine& machine() const { return context_.machine; }
+
+  /// Of that name.
+  OccasionTest at_station(const std::string& station) const;
   /// Occasions that the optional keys `setup`, `station` and `tool` leave.
   OccasionTest where() const;
 

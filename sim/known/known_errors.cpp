@@ -1,43 +1,13 @@
-#include "volcal/sim/known_errors.h"
+#include "volcal/sim/known/known_errors.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "volcal/sim/known/known_spline.h"
+
 namespace volcal::sim {
 namespace {
-
-/// Clamped spline by de Boor's algorithm (C. de Boor, A Practical Guide to Splines, 1978, ch. X).
-class KnownSpline {
- public:
-  KnownSpline(int degree, const std::vector<double>& breakpoints, std::vector<double> coefficients)
-      : degree_(static_cast<std::size_t>(degree)), coefficients_(std::move(coefficients)) {
-    knots_.assign(degree_, breakpoints.front());
-    knots_.insert(knots_.end(), breakpoints.begin(), breakpoints.end());
-    knots_.insert(knots_.end(), degree_, breakpoints.back());
-  }
-
-  double operator()(double q) const {
-    const std::size_t last = coefficients_.size() - 1;
-    std::size_t span = degree_;
-    while (span < last && q >= knots_[span + 1]) ++span;
-    std::vector<double> d(coefficients_.begin() + static_cast<std::ptrdiff_t>(span - degree_),
-                          coefficients_.begin() + static_cast<std::ptrdiff_t>(span) + 1);
-    for (std::size_t r = 1; r <= degree_; ++r) {
-      for (std::size_t j = degree_; j >= r; --j) {
-        const double left = knots_[span - degree_ + j], right = knots_[span + 1 + j - r];
-        const double share = (q - left) / (right - left);
-        d[j] = (1.0 - share) * d[j - 1] + share * d[j];
-      }
-    }
-    return d[degree_];
-  }
-
- private:
-  std::size_t degree_;
-  std::vector<double> coefficients_;
-  std::vector<double> knots_;
-};
 
 /// sum c_n P_n(t), t from -1 to 1 over the travel.
 struct KnownLegendre {
@@ -74,11 +44,7 @@ struct KnownFourier {
 
 std::vector<double> breakpoints_of(const FunctionSpec& spec, const Axis& axis) {
   if (spec.knots != KnotChoice::IntervalCount) return spec.breakpoints;
-  std::vector<double> ends;
-  for (int i = 0; i < spec.intervals; ++i)
-    ends.push_back(axis.travel_min + axis.travel() * static_cast<double>(i) / spec.intervals);
-  ends.push_back(axis.travel_max);
-  return ends;
+  return equal_pieces(axis.travel_min, axis.travel_max, spec.intervals);
 }
 
 ErrorFunction known_function(const FunctionSpec& spec, ErrorSymbol symbol, const Axis& axis,

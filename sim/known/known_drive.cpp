@@ -1,0 +1,145 @@
+// Effects of drives and scales: reversals, and what repeats with a screw, a rack, a worm or a scale.
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "volcal/sim/known/known_kinds.h"
+
+namespace volcal::sim {
+namespace {
+
+constexpr double kUsualLead = 10e-3;    // m
+constexpr double kUsualSignal = 1e-3;   // m
+constexpr double kUsualRack = 125e-3;   // m
+constexpr double kUsualLength = 10e-3;  // m
+constexpr double kRingPeriod = 2.0 * std::numbers::pi;
+constexpr double kUsualTooth = kRingPeriod / 90.0;
+
+/// Of the key `symbols`, "EXX EYY".
+std::vector<ErrorSymbol> symbols_of(const HiddenSettings& settings) {
+  constexpr const char* kRemedy = "write symbols = \"EXX EYY EZZ\"";
+  std::istringstream words(settings.text("symbols", ""));
+  std::vector<ErrorSymbol> symbols;
+  for (std::string word; words >> word;) {
+    const auto symbol = ErrorSymbol::parse(word);
+    if (!symbol) settings.fail("\"" + word + "\" is no error motion", kRemedy);
+    symbols.push_back(*symbol);
+  }
+  if (symbols.empty()) settings.fail("it names no error motion", kRemedy);
+  return symbols;
+}
+
+void known_reversal(const HiddenSettings& settings, HiddenScene& scene) {
+  const ErrorSymbol symbol = settings.symbol();
+  scene.machine.add_state_error(symbol,
+                                [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis)](
+                                    const MachineState& state) { return half * d(state); });
+}
+
+void known_common_reversal(const HiddenSettings& settings, HiddenScene& scene) {
+  for (const ErrorSymbol symbol : symbols_of(settings)) {
+    scene.machine.add_state_error(
+        symbol, [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis)](
+                    const MachineState& state) { return half * d(state); });
+  }
+}
+
+void known_position_reversal(const HiddenSettings& settings, HiddenScene& scene) {
+  const ErrorSymbol symbol = settings.symbol();
+  scene.machine.add_state_error(symbol,
+                                [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis),
+                                 q = from_home(settings, symbol.axis)](const MachineState& state) {
+                                  return half * d(state) * q(state);
+                                });
+}
+
+/// Of the axis' position from home, with the amplitudes `cos` and `sin`.
+StateNumber wave_of(const HiddenSettings& settings, double usual_period) {
+  return [wave_number = 2.0 * std::numbers::pi / settings.positive("period", usual_period),
+          of_cosine = settings.number("cos", 0.0), of_sine = settings.number("sin", 0.0),
+          q = from_home(settings, settings.symbol().axis)](const MachineState& state) {
+    const double angle = wave_number * q(state);
+    return of_cosine * std::cos(angle) + of_sine * std::sin(angle);
+  };
+}
+
+void add_wave(const HiddenSettings& settings, double usual_period, HiddenScene& scene) {
+  scene.machine.add_state_error(settings.symbol(), wave_of(settings, usual_period));
+}
+
+void known_lead_error(const HiddenSettings& settings, HiddenScene& scene) {
+  add_wave(settings, kUsualLead, scene);
+}
+
+void known_subdivision(const HiddenSettings& settings, HiddenScene& scene) {
+  add_wave(settings, kUsualSignal, scene);
+}
+
+void known_curved_reversal(const HiddenSettings& settings, HiddenScene& scene) {
+  const ErrorSymbol symbol = settings.symbol();
+  scene.machine.add_state_error(symbol,
+                                [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis),
+                                 q = from_home(settings, symbol.axis)](const MachineState& state) {
+                                  return half * d(state) * q(state) * q(state);
+                                });
+}
+
+void known_thermal_reversal(const HiddenSettings& settings, HiddenScene& scene) {
+  const ErrorSymbol symbol = settings.symbol();
+  scene.machine.add_state_error(
+      symbol, [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis),
+               excess = settings.excess_temperature("temperature")](const MachineState& state) {
+        return half * d(state) * excess(state);
+      });
+}
+
+void known_pre_travel(const HiddenSettings& settings, HiddenScene& scene) {
+  const ErrorSymbol symbol = settings.symbol();
+  scene.machine.add_state_error(symbol,
+                                [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis),
+                                 length = settings.positive("length", kUsualLength),
+                                 k = index_of(symbol.axis)](const MachineState& state) {
+                                  return half * d(state) * std::exp(-state.since_reversal[k] / length);
+                                });
+}
+
+void known_growing_lead_error(const HiddenSettings& settings, HiddenScene& scene) {
+  const StateNumber q = from_home(settings, settings.symbol().axis);
+  scene.machine.add_state_error(settings.symbol(),
+                                [q, wave = wave_of(settings, kUsualLead)](const MachineState& state) {
+                                  return q(state) * wave(state);
+                                });
+}
+
+void known_rack_error(const HiddenSettings& settings, HiddenScene& scene) {
+  add_wave(settings, kUsualRack, scene);
+}
+
+void known_worm_error(const HiddenSettings& settings, HiddenScene& scene) {
+  add_wave(settings, kUsualTooth, scene);
+}
+
+void known_ring_eccentricity(const HiddenSettings& settings, HiddenScene& scene) {
+  add_wave(settings, kRingPeriod, scene);
+}
+
+}  // namespace
+
+std::vector<KnownKind> known_drive_kinds() {
+  return {
+      {"common-reversal", known_common_reversal},
+      {"curved-reversal", known_curved_reversal},
+      {"encoder-subdivision", known_subdivision},
+      {"growing-lead-error", known_growing_lead_error},
+      {"lead-error", known_lead_error},
+      {"position-reversal", known_position_reversal},
+      {"pre-travel", known_pre_travel},
+      {"rack-error", known_rack_error},
+      {"reversal", known_reversal},
+      {"ring-eccentricity", known_ring_eccentricity},
+      {"thermal-reversal", known_thermal_reversal},
+      {"worm-error", known_worm_error},
+  };
+}
+
+}  // namespace volcal::sim

@@ -1,0 +1,85 @@
+// Effects of bodies that are not rigid.
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include "volcal/sim/known/known_kinds.h"
+
+namespace volcal::sim {
+namespace {
+
+void known_axis_coupling(const HiddenSettings& settings, HiddenScene& scene) {
+  const std::string shape = settings.text("shape", "linear");
+  const double power = shape == "cubic" ? 3.0 : shape == "quadratic" ? 2.0 : 1.0;
+  scene.machine.add_state_error(
+      settings.symbol(), [a = amplitude_of(settings), q = from_home(settings, settings.other_axis("axis")),
+                          power](const MachineState& state) { return a * std::pow(q(state), power); });
+}
+
+void known_product_coupling(const HiddenSettings& settings, HiddenScene& scene) {
+  scene.machine.add_state_error(
+      settings.symbol(), [a = amplitude_of(settings), first = from_home(settings, settings.axis("axis")),
+                          second = from_home(settings, settings.axis("second_axis"))](
+                             const MachineState& state) { return a * first(state) * second(state); });
+}
+
+void known_tool_load(const HiddenSettings& settings, HiddenScene& scene) {
+  scene.machine.add_state_error(
+      settings.symbol(), [a = amplitude_of(settings), tool = settings.tool()](const MachineState& state) {
+        return state.tool == tool ? a : 0.0;
+      });
+}
+
+void known_triple_coupling(const HiddenSettings& settings, HiddenScene& scene) {
+  std::vector<StateNumber> factors;
+  std::istringstream words(settings.text("axes", ""));
+  for (std::string word; words >> word;) {
+    const auto axis = word.size() == 1 ? axis_from_letter(word[0]) : std::nullopt;
+    if (!axis) settings.fail("\"" + word + "\" is no axis", "write axes = \"Y Z Z\" for y z^2");
+    factors.push_back(from_home(settings, *axis));
+  }
+  scene.machine.add_state_error(settings.symbol(),
+                                [a = amplitude_of(settings), factors](const MachineState& state) {
+                                  double product = a;
+                                  for (const StateNumber& factor : factors) product *= factor(state);
+                                  return product;
+                                });
+}
+
+/// What gravity does to a body that tilts.
+StateNumber load_of_tilt(const HiddenSettings& settings) {
+  return [q = from_home(settings, settings.other_axis("axis")),
+          is_sine = settings.text("shape", "sine") == "sine"](const MachineState& state) {
+    return is_sine ? std::sin(q(state)) : 1.0 - std::cos(q(state));
+  };
+}
+
+void known_tilt_load(const HiddenSettings& settings, HiddenScene& scene) {
+  scene.machine.add_state_error(settings.symbol(),
+                                [a = amplitude_of(settings), load = load_of_tilt(settings)](
+                                    const MachineState& state) { return a * load(state); });
+}
+
+void known_cradle_coupling(const HiddenSettings& settings, HiddenScene& scene) {
+  scene.machine.add_state_error(
+      settings.symbol(), [of_cosine = settings.number("cos", 0.0), of_sine = settings.number("sin", 0.0),
+                          load = load_of_tilt(settings),
+                          q = from_home(settings, settings.symbol().axis)](const MachineState& state) {
+        return load(state) * (of_cosine * std::cos(q(state)) + of_sine * std::sin(q(state)));
+      });
+}
+
+}  // namespace
+
+std::vector<KnownKind> known_structure_kinds() {
+  return {
+      {"axis-coupling", known_axis_coupling},
+      {"cradle-coupling", known_cradle_coupling},
+      {"product-coupling", known_product_coupling},
+      {"tilt-load", known_tilt_load},
+      {"tool-load", known_tool_load},
+      {"triple-coupling", known_triple_coupling},
+  };
+}
+
+}  // namespace volcal::sim

@@ -192,7 +192,8 @@ void define_budget(py::module_& module) {
       "file "
       "of its tolerances (volcal-tolerances-1), None = the table [tolerances] of the machine file. tool: by "
       "name, "
-      "\"\" = the machine's first. conditions: {\"T_air\": 23.3}. grid: positions per linear axis, 2 to 41. "
+      "\"\" = the machine's first. conditions: {\"T_air\": 23.3}. "
+      "grid: as many places as a grid of so many positions per linear axis has, 2 to 41. "
       "within_readings: refuse where an axis was measured over a part of its travel. Raises InputError.");
 }
 

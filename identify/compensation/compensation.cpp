@@ -10,35 +10,6 @@ constexpr int kSlopeSamples = 400;
 
 }  // namespace
 
-std::vector<AxisName> linear_axes_of(const Machine& machine) {
-  std::vector<AxisName> axes;
-  for (const AxisName axis : kLinearAxes) {
-    if (machine.has_axis(axis)) axes.push_back(axis);
-  }
-  return axes;
-}
-
-Eigen::Vector3d movable_directions(const Machine& machine) {
-  Eigen::Vector3d movable = Eigen::Vector3d::Zero();
-  for (const AxisName axis : linear_axes_of(machine)) movable[direction_of(axis)] = 1.0;
-  return movable;
-}
-
-AxisPosition middle_of_travel(const Machine& machine) {
-  AxisPosition middle{};
-  for (const AxisName axis : linear_axes_of(machine))
-    middle[index_of(axis)] = 0.5 * (machine.axis(axis).travel_min + machine.axis(axis).travel_max);
-  for (const AxisName axis : machine.parallel_axes()) middle[index_of(axis)] = machine.axis(axis).home;
-  return middle;
-}
-
-AxisPosition home_of(const Machine& machine) {
-  AxisPosition home{};
-  for (const AxisName axis : linear_axes_of(machine)) home[index_of(axis)] = machine.axis(axis).home;
-  for (const AxisName axis : machine.parallel_axes()) home[index_of(axis)] = machine.axis(axis).home;
-  return home;
-}
-
 Compensation::Compensation(const Machine& machine, const AxisPosition& lines, CompensationType type,
                            DisplacementField errors, LineField along)
     : type_(type),

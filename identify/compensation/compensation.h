@@ -18,18 +18,9 @@
 
 #include "volcal/identify/compensation/compensation_type.h"
 #include "volcal/identify/errors/error_field.h"
+#include "volcal/identify/errors/volume/volume_points.h"
 
 namespace volcal {
-
-/// Middle of the travel of every linear axis, rotary axes at 0: where the specific lines cross unless the
-/// user says otherwise (ISO/TR 16907, 8.2.2).
-AxisPosition middle_of_travel(const Machine& machine);
-/// Every linear axis at its home, rotary axes at 0.
-AxisPosition home_of(const Machine& machine);
-/// The linear axes of the machine, in the order X Y Z.
-std::vector<AxisName> linear_axes_of(const Machine& machine);
-/// 1 where the machine has the linear axis, 0 where it has not.
-Eigen::Vector3d movable_directions(const Machine& machine);
 
 class Compensation {
  public:

@@ -4,6 +4,7 @@
 /// table_formats.cpp; the command line, its help, the check of what is left in the volume, the fuzzer and the
 /// contract tests follow from the registration.
 
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
@@ -108,6 +109,9 @@ void check_table_options(const TableFormat& format, const FitResult& result,
                          const TableFormatOptions& options);
 std::vector<TableFile> write_tables(const TableFormat& format, const FitResult& result,
                                     const TableFormatOptions& options);
+std::size_t bytes_of(std::span<const TableFile> files);
+/// What tables may take together where their steps are chosen.
+inline constexpr std::size_t kMostTableBytes = 30'000'000;
 
 /// Value of a setting, given or declared.
 std::string table_setting(std::span<const TableSetting> settings, const TableFormatOptions& options,

@@ -148,6 +148,12 @@ std::vector<TableFile> write_tables(const TableFormat& format, const FitResult& 
   return format.write(result, options);
 }
 
+std::size_t bytes_of(std::span<const TableFile> files) {
+  std::size_t bytes = 0;
+  for (const TableFile& file : files) bytes += file.content.size();
+  return bytes;
+}
+
 std::string table_setting(std::span<const TableSetting> settings, const TableFormatOptions& options,
                           std::string_view name) {
   const auto given = options.settings.find(std::string(name));

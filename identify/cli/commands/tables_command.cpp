@@ -385,11 +385,12 @@ void add_compensation_options(CLI::App& app, TablesArguments& arguments) {
           ->check(positive());
   app.add_option(
          "--rotary-step", arguments.rotary_step_deg,
-         "at most, between positions of rotary axes, deg; default 10 on grids, 5 in tables of one axis")
+         "at most, between positions of rotary axes, deg; default 10 on grids and 5 in tables of one axis, "
+         "or what the tolerance needs below that")
       ->check(CLI::Range(0.01, 180.0));
   app.add_option(
          "--tolerance", arguments.tolerance_um,
-         "choose the largest round step at which the tables, read back, follow the ideal compensation "
+         "choose the largest round steps at which the tables, read back, follow the ideal compensation "
          "this closely, um; default 0.2")
       ->check(positive())
       ->excludes(step);

@@ -53,9 +53,7 @@ void report_levers(const Machine& machine, MadeTables& made) {
                             {"max", in_micrometres(made.all_axes->levers.max)}}});
 }
 
-/// Positions of rotary axes follow no tolerance.
-void report_rotary_step(MadeTables& made) {
-  const double tolerance = made.tolerance > 0.0 ? made.tolerance : kDefaultTableTolerance;
+void report_rotary_step(double tolerance, MadeTables& made) {
   if (!made.rotary_check || made.rotary_check->deviation <= kCoarseStep * tolerance) return;
   made.cautions.push_back(
       {FindingCode::RotaryTablesOffIdeal, {{"off", in_micrometres(made.rotary_check->deviation)}}});
@@ -81,12 +79,15 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
   made.options = options;
   check_table_options(format, result, made.options);
   const bool own_positions = format.positions_of_own && tolerance == 0.0;
+  const double wanted = tolerance > 0.0 ? tolerance : kDefaultTableTolerance;
   if (options.step == 0.0 && !own_positions) {
-    made.tolerance = tolerance > 0.0 ? tolerance : kDefaultTableTolerance;
+    made.tolerance = wanted;
     made.step = choose_step(format, result, made.options, made.tolerance);
     made.options.step = made.step.step;
   }
   if (format.step_of != nullptr) made.options.step = format.step_of(made.options);
+  if (made.options.rotary_step == 0.0 && !made.options.type.rotary().empty() && !own_positions)
+    made.options.rotary_step = choose_rotary_step(format, result, made.options, wanted);
   made.files = write_tables(format, result, made.options);
   made.read_back = format.read(made.files);
   made.check = check_in_volume(result, made.options, made.read_back);
@@ -95,7 +96,7 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
   made.effects_left_out = left_out_by(made.options.type, result);
   report_unknown_axes(result, made.cautions);
   report_levers(result.machine, made);
-  report_rotary_step(made);
+  report_rotary_step(wanted, made);
   report_more_than_none(made);
   return made;
 }

@@ -1,11 +1,15 @@
 #include "volcal/identify/compensation/checks/rotary_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "volcal/identify/compensation/checks/joint_error_shares.h"
 #include "volcal/identify/compensation/five_axis_compensation.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -97,6 +101,30 @@ std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const Fi
     check.deviation =
         std::max(check.deviation, (by_tables[i].displacement_w - by_ideal[i].displacement_w).norm());
   return check;
+}
+
+double choose_rotary_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
+                          double tolerance) {
+  constexpr std::array<double, 5> kSteps = {0.0, 5.0, 2.0, 1.0, 0.5};  // deg
+  constexpr double kAsGood = 0.95;
+  double best = options.rotary_step, least = std::numeric_limits<double>::infinity();
+  for (const double step : kSteps) {
+    options.rotary_step = step * kRadianPerDegree;
+    try {
+      const std::vector<TableFile> files = write_tables(format, result, options);
+      if (bytes_of(files) > kMostTableBytes) break;
+      const CompensationTables tables = format.read(files);
+      const double deviation = check_rotary_axes(format, result, options, tables)->deviation;
+      if (deviation < kAsGood * least) {
+        best = options.rotary_step;
+        least = deviation;
+      }
+    } catch (const InputError&) {  // more points than the controller has
+      break;
+    }
+    if (least <= tolerance) break;
+  }
+  return best;
 }
 
 std::vector<RotaryCorrected> rotary_corrections(const TableFormat& format, const FitResult& result,

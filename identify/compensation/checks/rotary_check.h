@@ -32,6 +32,12 @@ std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const Fi
                                              const TableFormatOptions& options,
                                              const CompensationTables& tables);
 
+/// Largest step between positions of rotary axes, rad, at which the tables, read back, follow the ideal
+/// compensation within `tolerance`, m: the default (0), or below it 5, 2, 1 or 0.5 degrees; where none does,
+/// the one that follows best, or the coarser where it is as good. `options.step` must be chosen.
+double choose_rotary_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
+                          double tolerance);
+
 /// What tables add to the commands of X, Y, Z for errors of linear axes, with the rotary axes at 0: without
 /// what the ideal compensation of the type's rotary axes adds there. `tables` must live as long.
 DisplacementField linear_part(const FitResult& result, const TableFormatOptions& options,

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "volcal/identify/compensation/checks/rotary_check.h"
-#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/errors/volume/volume_uncertainty.h"
 #include "volcal/model/description/errors.h"
 
@@ -19,7 +18,6 @@ namespace {
 
 constexpr int kStepCells = 11;                                   // per axis, when a step is chosen
 constexpr double kCoarsestDecade = 10.0, kFinestStep = 0.99e-4;  // m
-constexpr std::size_t kMostBytes = 30'000'000;
 
 /// The error that is left where a compensation acts.
 DisplacementField corrected(const DisplacementField& errors, const DisplacementField& correction) {
@@ -39,53 +37,6 @@ DisplacementField part_of(const Compensation& type) {
   return [&type](const AxisPosition& position, const ApproachDirection& direction) {
     return Eigen::Vector3d(-type.correction(position, direction));
   };
-}
-
-/// Every combination of these shares of the travel of the linear axes, others at home.
-std::vector<AxisPosition> at_shares(const Machine& machine, const std::vector<double>& shares) {
-  std::vector<AxisPosition> positions = {home_of(machine)};
-  for (const AxisName name : linear_axes_of(machine)) {
-    const Axis& axis = machine.axis(name);
-    std::vector<AxisPosition> extended;
-    for (const AxisPosition& position : positions) {
-      for (const double share : shares) {
-        AxisPosition next = position;
-        next[index_of(name)] = axis.travel_min + axis.travel() * share;
-        extended.push_back(next);
-      }
-    }
-    positions = std::move(extended);
-  }
-  return positions;
-}
-
-std::vector<double> middles(int cells) {
-  std::vector<double> shares;
-  for (int i = 0; i < cells; ++i) shares.push_back((i + 0.5) / cells);
-  return shares;
-}
-
-/// As many places as there are such cells per axis, spread evenly over the travel of the linear axes.
-std::vector<AxisPosition> spread_places(const Machine& machine, int cells) {
-  std::vector<AxisPosition> places;
-  const std::vector<AxisName> axes = linear_axes_of(machine);
-  const int count = static_cast<int>(std::lround(std::pow(cells, static_cast<double>(axes.size()))));
-  for (const AxisPosition& pose : poses_of_all_axes(machine, count)) {
-    places.push_back(home_of(machine));
-    for (const AxisName axis : axes) places.back()[index_of(axis)] = pose[index_of(axis)];
-  }
-  return places;
-}
-
-void add_approaches(const std::vector<AxisPosition>& positions, bool inside,
-                    std::vector<VolumePoint>& points) {
-  for (const AxisPosition& position : positions) {
-    for (unsigned signs = 0; signs < 8; ++signs) {
-      VolumePoint point{position, {}, inside};
-      for (std::size_t i = 0; i < 3; ++i) point.direction[i] = ((signs >> i) & 1U) != 0 ? 1 : -1;
-      points.push_back(point);
-    }
-  }
 }
 
 /// 5, 2 and 1 x 10^n up to `longest`, coarse to fine, m.
@@ -110,42 +61,11 @@ double largest_deviation(const Machine& machine, const Compensation& ideal,
                       : std::vector<ApproachDirection>{{}};
   const Eigen::Vector3d zero = difference(home_of(machine), directions.front());
   double largest = 0.0;
-  for (const AxisPosition& position : spread_places(machine, kStepCells)) {
+  for (const AxisPosition& position : spread_places(machine, linear_axes_of(machine), kStepCells)) {
     for (const ApproachDirection& direction : directions)
       largest = std::max(largest, (difference(position, direction) - zero).cwiseAbs().maxCoeff());
   }
   return largest;
-}
-
-std::size_t bytes_of(const std::vector<TableFile>& files) {
-  std::size_t bytes = 0;
-  for (const TableFile& file : files) bytes += file.content.size();
-  return bytes;
-}
-
-}  // namespace
-
-std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis) {
-  std::vector<VolumePoint> points;
-  add_approaches(spread_places(machine, cells_per_axis), true, points);
-  add_approaches(at_shares(machine, {0.0, 0.5, 1.0}), false, points);
-  return points;
-}
-
-std::vector<VolumePoint> volume_lattice(const Machine& machine, int cells_per_axis) {
-  std::vector<VolumePoint> points;
-  add_approaches(at_shares(machine, middles(cells_per_axis)), true, points);
-  return points;
-}
-
-namespace {
-
-/// Where the axes bring the functional point; a parallel axis goes on from its home.
-Eigen::Vector3d place_of(const Machine& machine, const AxisPosition& position) {
-  Eigen::Vector3d place(position[0], position[1], position[2]);
-  for (const AxisName axis : machine.parallel_axes())
-    place[direction_of(axis)] += position[index_of(axis)] - machine.axis(axis).home;
-  return place;
 }
 
 /// Every point with the parallel axes at home and at the ends of their travel.
@@ -310,7 +230,7 @@ StepChoice choose_step(const TableFormat& format, const FitResult& result, Table
     options.step = step;
     try {
       const std::vector<TableFile> files = write_tables(format, result, options);
-      if (bytes_of(files) > kMostBytes) break;
+      if (bytes_of(files) > kMostTableBytes) break;
       const CompensationTables tables = format.read(files);
       const double deviation = largest_deviation(result.machine, ideal, linear_part(result, options, tables),
                                                  format.limits.both_directions);

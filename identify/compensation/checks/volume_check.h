@@ -53,19 +53,6 @@ struct VolumeCheck {
   std::optional<ParallelLeft> over_parallel;  ///< none where the machine has no parallel axis
 };
 
-struct VolumePoint {
-  AxisPosition position{};
-  ApproachDirection direction{};
-  bool inside = true;  ///< counts in the mean; otherwise in the maximum alone
-};
-/// As many places as there are cells, and after them the ends and the middle of travel in all combinations,
-/// each approached from + and - in all combinations; other axes at home. The places follow a sequence without
-/// a period (Halton 1960): no wave and no table has one in common with them, and as many positions of every
-/// axis are seen as there are places.
-std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis);
-/// The middles of the cells, a lattice: for what is solved by positions of the axes.
-std::vector<VolumePoint> volume_lattice(const Machine& machine, int cells_per_axis);
-
 /// Figures of a field at these points: the rigid motion is that of the points inside.
 ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& points,
                      const DisplacementField& errors);

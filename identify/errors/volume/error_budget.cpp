@@ -5,12 +5,13 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <utility>
 
-#include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/errors/volume/faded_in_volume.h"
 #include "volcal/identify/errors/volume/volume_moments.h"
+#include "volcal/identify/errors/volume/volume_points.h"
 #include "volcal/identify/errors/volume/volumetric.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/statistics/quadratic_form.h"
@@ -42,24 +43,6 @@ std::string cause_of(const Contribution& part) {
   if (is_rotary(symbol.axis)) return kCauseOfRotaryAxes;
   if (symbol.is_positioning()) return "positioning";
   return symbol.is_straightness() ? "straightness" : "angular errors";
-}
-
-/// Poses of the volume, each at several positions of U, V, W, whose errors are zero at home.
-std::vector<AxisPosition> with_parallel_positions(const Machine& machine, int per_axis) {
-  std::vector<AxisPosition> positions = axis_grid(machine, per_axis).positions();
-  for (const AxisName name : machine.parallel_axes()) {
-    const Axis& axis = machine.axis(name);
-    std::vector<AxisPosition> more;
-    for (const AxisPosition& position : positions) {
-      for (int i = 0; i < per_axis; ++i) {
-        more.push_back(position);
-        const double share = per_axis > 1 ? static_cast<double>(i) / (per_axis - 1) : 0.5;
-        more.back()[index_of(name)] = axis.travel_min + share * axis.travel();
-      }
-    }
-    positions = std::move(more);
-  }
-  return positions;
 }
 
 /// Positions of rotary axes, one set after another, spread evenly and without a period in common with a grid
@@ -102,7 +85,7 @@ class SpreadRotaryAxes {
 /// The displacements of every contribution at the poses of the volume.
 class VolumeOfParts {
  public:
-  VolumeOfParts(const FitResult& result, const Tool& tool, const Conditions& conditions, int per_axis,
+  VolumeOfParts(const FitResult& result, const Tool& tool, const Conditions& conditions, int cells_per_axis,
                 RotaryPoses rotary)
       : result_(result),
         is_uncertain_(!result.covariance.isZero(0.0)),
@@ -114,25 +97,32 @@ class VolumeOfParts {
                 rotary == RotaryPoses::AtRest ? std::vector<AxisName>() : identified_rotary_axes(result)) {
     fields_.resize(parts_.size());
     VolumeMoments moments(result.parameters.size());
-    std::vector<AxisName> axes(kLinearAxes.begin(), kLinearAxes.end());
+    std::vector<AxisName> axes = linear_axes_of(result.machine);
     for (const AxisName axis : result.machine.parallel_axes()) axes.push_back(axis);
-    for (const AxisPosition& position : with_parallel_positions(result.machine, per_axis)) {
+    const auto add_approaches = [&](const AxisPosition& place, bool inside) {
       for (unsigned signs = 0; signs < 1U << axes.size(); ++signs) {
         ApproachDirection direction{};
         for (std::size_t i = 0; i < axes.size(); ++i)
           direction[index_of(axes[i])] = ((signs >> i) & 1U) != 0 ? 1 : -1;
-        AxisPosition pose = position;
+        AxisPosition pose = place;
         turned_.place(points_.size(), pose, direction);
-        add(pose, direction, moments);
+        add(pose, direction);
+        if (inside) add_uncertainty(pose, direction, moments);
       }
-    }
+    };
+    for (const AxisPosition& place : spread_places(result.machine, axes, cells_per_axis))
+      add_approaches(place, true);
+    inside_ = points_.size();
+    for (const AxisPosition& place : ends_of_travel(result.machine, axes)) add_approaches(place, false);
     if (is_uncertain_) moments_ = moments.mean();
   }
 
   const std::vector<Contribution>& parts() const { return parts_; }
   const std::vector<AxisName>& turned() const { return turned_.axes(); }
-  Field field(std::size_t part) const { return without_rigid_motion(points_, fields_[part]); }
+  Field field(std::size_t part) const { return without_rigid_motion(points_, fields_[part], inside_); }
   std::size_t size() const { return points_.size(); }
+  /// The first of them, which count in means; at the others, the ends of travel, the largest error is sought.
+  std::size_t inside() const { return inside_; }
 
   /// Root mean square of the standard uncertainty of what these parameters make together.
   double u_rms(const std::vector<int>& parameters) const {
@@ -159,9 +149,9 @@ class VolumeOfParts {
     return eigenvalues(root.transpose() * result_.covariance(parameters, parameters) * root).cwiseMax(0.0);
   }
 
-  void add(const AxisPosition& position, const ApproachDirection& direction, VolumeMoments& moments) {
+  void add(const AxisPosition& position, const ApproachDirection& direction) {
     if (turned().empty()) {
-      points_.emplace_back(position[0], position[1], position[2]);
+      points_.push_back(place_of(result_.machine, position));
     } else {
       points_.push_back(chain_.nominal_point_w(position, offset_t_));
     }
@@ -174,6 +164,10 @@ class VolumeOfParts {
         displacement += rows.col(parameter) * result_.parameters[parameter];
       fields_[p].push_back(displacement);
     }
+  }
+  /// Of the point that was added last.
+  void add_uncertainty(const AxisPosition& position, const ApproachDirection& direction,
+                       VolumeMoments& moments) {
     if (is_uncertain_) moments.add(points_.back(), field_.unheld_rows(position, direction).topRows<3>());
     faded_.add(points_.back(), field_.faded_errors(position, direction));
   }
@@ -186,6 +180,7 @@ class VolumeOfParts {
   Vector3d offset_t_;
   SpreadRotaryAxes turned_;
   Field points_;
+  std::size_t inside_ = 0;
   std::vector<Field> fields_;
   Eigen::MatrixXd moments_;
   FadedInVolume faded_;
@@ -196,20 +191,22 @@ void add_to(Field& sum, const Field& part) {
   for (std::size_t i = 0; i < part.size(); ++i) sum[i] += part[i];
 }
 
-double mean_product(const Field& one, const Field& other) {
+double mean_product(std::span<const Vector3d> one, std::span<const Vector3d> other) {
   double sum = 0.0;
   for (std::size_t i = 0; i < one.size(); ++i) sum += one[i].dot(other[i]);
   return one.empty() ? 0.0 : sum / static_cast<double>(one.size());
 }
 
-BudgetLine line_of(std::string name, const Field& field, const Field& whole) {
+/// The first `inside` points count in means.
+BudgetLine line_of(std::string name, const Field& field, const Field& whole, std::size_t inside) {
   BudgetLine line;
   line.name = std::move(name);
-  const VolumetricFigures figures = volumetric_figures(field);
-  line.rms = figures.rms;
-  line.max = figures.max;
-  const double square = mean_product(whole, whole);
-  line.share = square > 0.0 ? mean_product(field, whole) / square : 0.0;
+  const std::span<const Vector3d> of_field = std::span(field).first(inside);
+  const std::span<const Vector3d> of_whole = std::span(whole).first(inside);
+  line.rms = std::sqrt(mean_product(of_field, of_field));
+  line.max = volumetric_figures(field).max;
+  const double square = mean_product(of_whole, of_whole);
+  line.share = square > 0.0 ? mean_product(of_field, of_whole) / square : 0.0;
   return line;
 }
 
@@ -245,8 +242,8 @@ struct Together {
 }  // namespace
 
 ErrorBudget error_budget(const FitResult& result, const Tool& tool, const Conditions& conditions,
-                         int per_axis, RotaryPoses rotary) {
-  const VolumeOfParts volume(result, tool, conditions, per_axis, rotary);
+                         int cells_per_axis, RotaryPoses rotary) {
+  const VolumeOfParts volume(result, tool, conditions, cells_per_axis, rotary);
   Together whole;
   whole.field.assign(volume.size(), Vector3d::Zero());
   std::map<std::string, Together> by_cause;
@@ -264,11 +261,11 @@ ErrorBudget error_budget(const FitResult& result, const Tool& tool, const Condit
       budget.at_rest.push_back(axis.name);
   }
   const auto line = [&](const std::string& name, const Field& field, const std::vector<int>& parameters) {
-    BudgetLine made = line_of(name, field, whole.field);
+    BudgetLine made = line_of(name, field, whole.field, volume.inside());
     made.u_rms = volume.u_rms(parameters);
-    const double expected = std::pow(budget.total.expected_rms(), 2);
-    if (expected > 0.0)
-      made.expected_share = (mean_product(field, whole.field) + made.u_rms * made.u_rms) / expected;
+    const double square = budget.total.rms * budget.total.rms;
+    const double expected = square + budget.total.u_rms * budget.total.u_rms;
+    if (expected > 0.0) made.expected_share = (made.share * square + made.u_rms * made.u_rms) / expected;
     return made;
   };
   budget.total = line("all", whole.field, whole.parameters);

@@ -1,8 +1,8 @@
 #pragma once
 /// Which error contributes how much to the error of the volume: every contribution of the error field over
-/// the travel of the linear axes, approached from both sides, and of the rotary axes that were identified,
-/// after the best rigid motion in workpiece coordinates, which a frame's alignment takes up (ISO/TR
-/// 16907:2015, 11; the error budget of Slocum).
+/// the travel of the linear axes, approached from both sides, and of the rotary axes that were identified, at
+/// places without a period (volume_points.h), after the best rigid motion in workpiece coordinates, which a
+/// frame's alignment takes up (ISO/TR 16907:2015, 11; the error budget of Slocum).
 ///
 /// Shares are <e_c, e> / <e, e> over the volume, e the whole error: they sum to 1, and a contribution that
 /// cancels part of the others has a negative one. Uncertainties are of the same displacements, correlations
@@ -25,7 +25,7 @@ struct BudgetLine {
   std::string name;             ///< of the contribution, or of the cause
   std::string depends_on;       ///< of a contribution
   double rms = 0.0;             ///< of the displacement, m
-  double max = 0.0;             ///< m
+  double max = 0.0;             ///< at these places and at the ends of travel, m
   double share = 0.0;           ///< of the mean square of the whole error
   double u_rms = 0.0;           ///< root mean square of the standard uncertainty of the contribution, m
   double expected_share = 0.0;  ///< of the mean square that is expected with the uncertainty
@@ -51,9 +51,9 @@ enum class RotaryPoses {
   OverTravel  ///< those with errors over their travel, a turn at most; others at 0
 };
 
-/// `per_axis` positions on every linear axis, ends of travel included. Rotary axes take a position of their
-/// own at each of these poses and directions of approach, spread evenly over their travel.
+/// At spread_places() of `cells_per_axis`. Rotary axes take a position of their own at each of these places
+/// and directions of approach, spread evenly over their travel.
 ErrorBudget error_budget(const FitResult& result, const Tool& tool, const Conditions& conditions,
-                         int per_axis, RotaryPoses rotary = RotaryPoses::OverTravel);
+                         int cells_per_axis, RotaryPoses rotary = RotaryPoses::OverTravel);
 
 }  // namespace volcal

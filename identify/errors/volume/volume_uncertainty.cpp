@@ -6,20 +6,9 @@
 
 #include "volcal/identify/errors/volume/faded_in_volume.h"
 #include "volcal/identify/errors/volume/volume_moments.h"
+#include "volcal/identify/errors/volume/volume_points.h"
 
 namespace volcal {
-namespace {
-
-/// 1 where the machine has the linear axis.
-Eigen::Vector3d movable_of(const Machine& machine) {
-  Eigen::Vector3d movable = Eigen::Vector3d::Zero();
-  for (const Axis& axis : machine.axes) {
-    if (!is_rotary(axis.name)) movable[direction_of(axis.name)] = 1.0;
-  }
-  return movable;
-}
-
-}  // namespace
 
 double volume_uncertainty(const FitResult& result, const Tool& tool, const Conditions& conditions,
                           std::span<const AxisPosition> positions,
@@ -28,7 +17,7 @@ double volume_uncertainty(const FitResult& result, const Tool& tool, const Condi
     throw std::invalid_argument("as many positions as directions are needed");
   const bool is_uncertain = !result.covariance.isZero(0.0);
   const ErrorField field(result, tool, conditions);
-  const Eigen::Vector3d movable = movable_of(result.machine);
+  const Eigen::Vector3d movable = movable_directions(result.machine);
   VolumeMoments moments(result.layout.size);
   FadedInVolume faded;
   for (std::size_t i = 0; i < positions.size(); ++i) {

@@ -393,6 +393,30 @@ TEST(HeidenhainRotaryTables, ByHand) {
               HasSubstr("end no turn"));
 }
 
+/// ECC = a sin(12 C), 300 mm from the axis at most: straight lines between positions h apart are a (12 h)^2 /
+/// 8 off, 0.8 um at 5 degrees and 0.13 um at 2.
+TEST(RotarySteps, FollowTheTolerance) {
+  const TableFormat& format = *find_table_format("neutral-csv");
+  const auto made_with = [&](double waves, double tolerance, double rotary_step = 0.0) {
+    const FitResult result = testing::result_with(
+        testing::rotary_machine("w C' b X Y Z t"),
+        {.functions = {{"ECC", [=](double q) { return 20e-6 * std::sin(waves * q); }}}}, 360);
+    TableFormatOptions options = loop_options({"neutral-csv", "R-VOL", "", {}});
+    options.rotary_step = rotary_step;
+    return make_tables(format, result, options, tolerance);
+  };
+  const MadeTables fine = made_with(12.0, 0.0);
+  EXPECT_NEAR(fine.options.rotary_step, 2.0 * kRadianPerDegree, 1e-12);
+  EXPECT_LE(fine.rotary_check->deviation, kDefaultTableTolerance);
+  EXPECT_THAT(fine.cautions, ::testing::IsEmpty());
+  EXPECT_EQ(made_with(12.0, 2e-6).options.rotary_step, 0.0);
+  EXPECT_EQ(made_with(1.0, 0.0).options.rotary_step, 0.0);
+  const MadeTables given = made_with(12.0, 0.0, 10.0 * kRadianPerDegree);
+  EXPECT_NEAR(given.options.rotary_step, 10.0 * kRadianPerDegree, 1e-12);
+  ASSERT_EQ(given.cautions.size(), 1U);
+  EXPECT_EQ(given.cautions[0].code, FindingCode::RotaryTablesOffIdeal);
+}
+
 TEST(KinsRotaryFile, NeedsItsLinearAxesTogether) {
   const FitResult result = testing::rotary_result("w X' C' b Y Z t");
   EXPECT_THAT(testing::refusal([&] {

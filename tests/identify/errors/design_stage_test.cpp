@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kPerAxis = 5;
+constexpr int kPerAxis = 7;  // positions of machines that are drawn, and cells of budgets
 constexpr int kMachines = 1000;
 
 Machine designed_machine() {
@@ -115,7 +115,7 @@ std::vector<Vector3d> volume(const Machine& machine) {
   std::vector<Vector3d> points;
   const auto at = [&](AxisName name, int i) {
     const Axis& axis = machine.axis(name);
-    return axis.travel_min + axis.travel() * i / (kPerAxis - 1);
+    return axis.travel_min + axis.travel() * (i + 0.5) / kPerAxis;
   };
   for (int i = 0; i < kPerAxis; ++i) {
     for (int j = 0; j < kPerAxis; ++j) {
@@ -196,7 +196,7 @@ TEST(DesignStage, MeanSquareIsThatOfTheBandWhateverTheHome) {
     for (const char* name : {"EXX", "EYX"}) {
       Tolerances tolerances;
       tolerances.functions[*ErrorSymbol::parse(name)] = 12e-6;
-      constexpr int kMany = 41;
+      constexpr int kMany = 300;
       const ErrorBudget budget =
           error_budget(result_of_tolerances(machine, tolerances), machine.tools[0], {}, kMany);
       EXPECT_NEAR(budget.total.u_rms, std::sqrt(12.0) * 1e-6, 0.1e-6) << name << " home " << home;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -30,9 +31,11 @@ Machine machine_with_a_tool() {
   return machine;
 }
 
-// EXX = a (q - 1/2)^2 over 1 m, which no rigid motion takes up but its mean a/12: with 5 positions per axis
-// the squares are 1/4, 1/16, 0, 1/16, 1/4, mean 1/8, and the deviations 1/8, -1/16, -1/8, -1/16, 1/8 of a.
-// EYY jumps by b between the directions: +-b/2, whatever the position.
+constexpr int kCells = 9;
+
+// EXX = a (q - 1/2)^2 over 1 m, which no rigid motion takes up but its mean a/12: the mean square of the rest
+// is a^2 (1/80 - 1/144), and at the ends it is a/4 - a/12. EYY jumps by b between the directions: +-b/2,
+// whatever the position.
 TEST(ErrorBudget, IsTheHandCalculation) {
   const double a = 40e-6, b = 6e-6;
   FitResult result =
@@ -40,11 +43,11 @@ TEST(ErrorBudget, IsTheHandCalculation) {
                            {.functions = {{"EXX", [a](double q) { return a * (q - 0.5) * (q - 0.5); }}},
                             .reversals = {{"EYY", b}}},
                            20);
-  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
+  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, kCells);
   const BudgetLine& positioning = line_named(budget.contributions, "EXX");
-  const double exx = a * std::sqrt((3.0 / 64.0 + 2.0 / 256.0) / 5.0);
-  EXPECT_NEAR(positioning.rms, exx, 1e-12);
-  EXPECT_NEAR(positioning.max, a / 8.0, 1e-12);
+  const double exx = positioning.rms;
+  EXPECT_NEAR(exx, a / std::sqrt(180.0), 0.01 * exx);
+  EXPECT_NEAR(positioning.max, a / 6.0, 0.01 * a / 6.0);
   EXPECT_EQ(positioning.depends_on, "x");
   const BudgetLine& reversal = line_named(budget.contributions, "reversal EYY");
   EXPECT_NEAR(reversal.rms, 0.5 * b, 1e-12);
@@ -57,6 +60,23 @@ TEST(ErrorBudget, IsTheHandCalculation) {
   EXPECT_GE(budget.contributions[0].rms, budget.contributions[1].rms);
 }
 
+/// Eight waves over the travel are zero at nine positions with equal distances; a bump of 20 mm lies between
+/// them. Their mean squares are a^2 / 2, and of the bump a^2 (sqrt(pi) s - 2 pi s^2) about its mean.
+TEST(ErrorBudget, SeesWavesAndWhatIsNarrow) {
+  constexpr double kSize = 10e-6, kWidth = 0.02;
+  const auto rms_of = [](const std::function<double(double)>& exx) {
+    const FitResult result = testing::result_with(machine_with_a_tool(), {.functions = {{"EXX", exx}}}, 400);
+    return error_budget(result, result.machine.tools[0], {}, kCells).total.rms;
+  };
+  const double of_waves = kSize / std::sqrt(2.0);
+  EXPECT_NEAR(rms_of([](double q) { return kSize * std::sin(16.0 * std::numbers::pi * q); }), of_waves,
+              0.03 * of_waves);
+  const double of_bump =
+      kSize * std::sqrt(std::sqrt(std::numbers::pi) * kWidth - 2.0 * std::numbers::pi * kWidth * kWidth);
+  EXPECT_NEAR(rms_of([](double q) { return kSize * std::exp(-0.5 * std::pow((q - 0.437) / kWidth, 2)); }),
+              of_bump, 0.03 * of_bump);
+}
+
 TEST(ErrorBudget, SharesAddUpToTheWholeWhateverCancels) {
   FitResult result =
       testing::result_with(machine_with_a_tool(),
@@ -66,7 +86,7 @@ TEST(ErrorBudget, SharesAddUpToTheWholeWhateverCancels) {
                                           {"ECZ", [](double q) { return 1e-5 * q * q; }}},
                             .locations = {{"EC0Y", 2e-5}}},
                            12);
-  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
+  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, kCells);
   const auto total = [](const std::vector<BudgetLine>& lines) {
     return std::accumulate(lines.begin(), lines.end(), 0.0,
                            [](double sum, const BudgetLine& line) { return sum + line.share; });
@@ -87,20 +107,20 @@ Machine machine_with_table(double half_travel) {
 }
 
 /// A table whose angle is wrong by a sin q moves a point at the distance r of its axis by r a sin q: the mean
-/// square is a^2 / 2 times that of r, which is L^2 over five positions of X and of Y from -L to L, their mean
-/// squares L^2 / 2 each. Nothing of it is left with the table at 0, and no rigid motion takes any of it.
+/// square is a^2 / 2 times that of r, which is 2 L^2 / 3 over X and Y from -L to L. Nothing of it is left
+/// with the table at 0, and no rigid motion takes any of it.
 TEST(ErrorBudget, IsOverTheTravelOfRotaryAxesWithErrors) {
   constexpr double kHalfTravel = 0.3, kAngle = 20e-6;
   const FitResult result =
       testing::result_with(machine_with_table(kHalfTravel),
                            {.functions = {{"ECC", [](double q) { return kAngle * std::sin(q); }}}}, 72);
-  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
+  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, kCells);
   EXPECT_EQ(budget.turned, std::vector{AxisName::C});
   EXPECT_TRUE(budget.at_rest.empty());
-  const double expected = kAngle * kHalfTravel / std::sqrt(2.0);
+  const double expected = kAngle * kHalfTravel / std::sqrt(3.0);
   EXPECT_NEAR(line_named(budget.causes, "rotary axes").rms, expected, 0.02 * expected);
   EXPECT_NEAR(line_named(budget.causes, "rotary axes").share, 1.0, 1e-9);
-  const ErrorBudget at_rest = error_budget(result, result.machine.tools[0], {}, 5, RotaryPoses::AtRest);
+  const ErrorBudget at_rest = error_budget(result, result.machine.tools[0], {}, kCells, RotaryPoses::AtRest);
   EXPECT_EQ(at_rest.at_rest, std::vector{AxisName::C});
   EXPECT_LT(at_rest.total.rms, 1e-12);
 }
@@ -115,10 +135,10 @@ TEST(ErrorBudget, IsOverTheTravelOfRotaryAxesWithEffects) {
                                               {"cos", 0.0},
                                               {"sin", kAngle}})};
   const FitResult result = stated_result(machine_with_table(kHalfTravel), model);
-  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
+  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, kCells);
   EXPECT_EQ(budget.turned, std::vector{AxisName::C});
   EXPECT_TRUE(budget.at_rest.empty());
-  const double expected = kAngle * kHalfTravel / std::sqrt(2.0);
+  const double expected = kAngle * kHalfTravel / std::sqrt(3.0);
   EXPECT_NEAR(budget.total.rms, expected, 0.03 * expected);
 }
 
@@ -128,8 +148,9 @@ TEST(ErrorBudget, ApproachesRotaryAxesFromBothSides) {
   const FitResult result = testing::result_with(
       machine_with_table(kHalfTravel),
       {.functions = {{"ECC", [](double) { return 0.0; }}}, .reversals = {{"ECC", kJump}}}, 72);
-  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
-  EXPECT_NEAR(budget.total.rms, 0.5 * kJump * kHalfTravel, 0.02 * 0.5 * kJump * kHalfTravel);
+  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, kCells);
+  const double expected = 0.5 * kJump * kHalfTravel * std::sqrt(2.0 / 3.0);
+  EXPECT_NEAR(budget.total.rms, expected, 0.02 * expected);
 }
 
 // A model with values is a machine whose errors are known: EXX of 10 um/m and an expansion of 11 um/m/K.

@@ -31,26 +31,23 @@ std::vector<ErrorSymbol> symbols_of(const HiddenSettings& settings) {
 
 void known_reversal(const HiddenSettings& settings, HiddenScene& scene) {
   const ErrorSymbol symbol = settings.symbol();
-  scene.machine.add_state_error(symbol,
-                                [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis)](
-                                    const MachineState& state) { return half * d(state); });
+  scene.machine.add_state_error(symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis)](
+                                            const MachineState& state) { return half * d(state); });
 }
 
 void known_common_reversal(const HiddenSettings& settings, HiddenScene& scene) {
   for (const ErrorSymbol symbol : symbols_of(settings)) {
-    scene.machine.add_state_error(
-        symbol, [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis)](
-                    const MachineState& state) { return half * d(state); });
+    scene.machine.add_state_error(symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis)](
+                                              const MachineState& state) { return half * d(state); });
   }
 }
 
 void known_position_reversal(const HiddenSettings& settings, HiddenScene& scene) {
   const ErrorSymbol symbol = settings.symbol();
-  scene.machine.add_state_error(symbol,
-                                [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis),
-                                 q = from_home(settings, symbol.axis)](const MachineState& state) {
-                                  return half * d(state) * q(state);
-                                });
+  scene.machine.add_state_error(symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis),
+                                         q = from_home(settings, symbol.axis)](const MachineState& state) {
+    return half * d(state) * q(state);
+  });
 }
 
 /// Of the axis' position from home, with the amplitudes `cos` and `sin`.
@@ -77,17 +74,16 @@ void known_subdivision(const HiddenSettings& settings, HiddenScene& scene) {
 
 void known_curved_reversal(const HiddenSettings& settings, HiddenScene& scene) {
   const ErrorSymbol symbol = settings.symbol();
-  scene.machine.add_state_error(symbol,
-                                [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis),
-                                 q = from_home(settings, symbol.axis)](const MachineState& state) {
-                                  return half * d(state) * q(state) * q(state);
-                                });
+  scene.machine.add_state_error(symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis),
+                                         q = from_home(settings, symbol.axis)](const MachineState& state) {
+    return half * d(state) * q(state) * q(state);
+  });
 }
 
 void known_thermal_reversal(const HiddenSettings& settings, HiddenScene& scene) {
   const ErrorSymbol symbol = settings.symbol();
   scene.machine.add_state_error(
-      symbol, [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis),
+      symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis),
                excess = settings.excess_temperature("temperature")](const MachineState& state) {
         return half * d(state) * excess(state);
       });
@@ -95,12 +91,11 @@ void known_thermal_reversal(const HiddenSettings& settings, HiddenScene& scene) 
 
 void known_pre_travel(const HiddenSettings& settings, HiddenScene& scene) {
   const ErrorSymbol symbol = settings.symbol();
-  scene.machine.add_state_error(symbol,
-                                [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis),
-                                 length = settings.positive("length", kUsualLength),
-                                 k = index_of(symbol.axis)](const MachineState& state) {
-                                  return half * d(state) * std::exp(-state.since_reversal[k] / length);
-                                });
+  scene.machine.add_state_error(symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis),
+                                         length = settings.positive("length", kUsualLength),
+                                         k = index_of(symbol.axis)](const MachineState& state) {
+    return half * d(state) * std::exp(-state.since_reversal[k] / length);
+  });
 }
 
 void known_growing_lead_error(const HiddenSettings& settings, HiddenScene& scene) {

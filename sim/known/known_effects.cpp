@@ -11,7 +11,7 @@ StateNumber from_home(const HiddenSettings& settings, AxisName axis) {
   };
 }
 
-StateNumber direction_of_approach(AxisName axis) {
+StateNumber approach_of(AxisName axis) {
   return [k = index_of(axis)](const MachineState& state) { return static_cast<double>(state.direction[k]); };
 }
 

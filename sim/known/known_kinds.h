@@ -23,7 +23,7 @@ std::vector<KnownKind> known_instrument_kinds();
 std::vector<KnownKind> known_open_kinds();
 
 StateNumber from_home(const HiddenSettings& settings, AxisName axis);  ///< m or rad
-StateNumber direction_of_approach(AxisName axis);                      ///< -1, 0, 1
+StateNumber approach_of(AxisName axis);                                ///< -1, 0, 1
 double amplitude_of(const HiddenSettings& settings);                   ///< of the key `amplitude`
 Eigen::Vector3d vector_of(const HiddenSettings& settings);             ///< of the keys `x`, `y`, `z`
 /// The tool's offset grows along a vector, m, as `driver` says.

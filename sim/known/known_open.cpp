@@ -34,7 +34,7 @@ StateNumber value_of(const HiddenSettings& settings, const Variable& variable) {
       return
           [k = index_of(variable.axis), unit](const MachineState& state) { return state.position[k] / unit; };
     case Variable::Kind::Direction:
-      return sim::direction_of_approach(variable.axis);
+      return approach_of(variable.axis);
     case Variable::Kind::Time:
       return [unit](const MachineState& state) { return state.time / unit; };
     case Variable::Kind::Temperature:

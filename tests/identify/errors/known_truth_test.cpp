@@ -26,6 +26,7 @@ namespace {
 
 constexpr double kFirstOrder = 10e-9;  // m: errors of 20 um and 50 urad, squared, over a metre
 constexpr const char* kChannel = "column";
+constexpr double kPreTravel = 0.3;  // m
 constexpr const char* kOfRotaryAxes[] = {"cradle-coupling", "ring-eccentricity", "tilt-load", "worm-error"};
 
 Machine machine_with_homes() {
@@ -165,6 +166,7 @@ EffectSpec example_of(const std::string& kind, const Machine& machine) {
   if (has("temperature")) spec.options.set("temperature", std::string(kChannel));
   if (has("tool")) spec.options.set("tool", machine.tools[1].name);
   if (kind == "axis-coupling") spec.options.set("shape", std::string("quadratic"));
+  if (kind == "pre-travel") spec.options.set("length", kPreTravel);
   if (has("period")) spec.options.set("period", 0.137);
   if (has("time_constant")) spec.options.set("time_constant", 900.0);
   if (kind.starts_with("station-")) spec.options.set("station", std::string("P2"));
@@ -193,7 +195,9 @@ TEST(KnownTruth, EveryEffectIsThatOfTheModel) {
     with.effects = {example_of(kind, machine)};
     if (kind == "station-event") with.effects[0].options.set("time", pushed);
     const Campaign campaign = measured_without_noise(machine, with);
-    EXPECT_LT(largest_residual(campaign, with), kFirstOrder) << kind;
+    // An axis that turns overruns the point by 1 mm, which readings do not tell.
+    const double overrun = kind == "pre-travel" ? 12e-6 * 1e-3 / kPreTravel : 0.0;
+    EXPECT_LT(largest_residual(campaign, with), kFirstOrder + overrun) << kind;
     EXPECT_GT(largest_residual(campaign, without), 5.0 * kFirstOrder) << kind << " does nothing";
   }
 }

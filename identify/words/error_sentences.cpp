@@ -113,6 +113,14 @@ std::string levers_of_tilted_head(const Finding& finding) {
       finding.text("axes"), finding.number("rms").in_unit(), finding.number("max").in_unit());
 }
 
+std::string tables_off_ideal(const Finding& finding) {
+  return fmt::format(
+      "between their positions the tables are up to {:.2f} um off the ideal compensation: --tolerance takes "
+      "as "
+      "many positions as that needs, --step or --positions as many as they say",
+      finding.number("off").in_unit());
+}
+
 std::string rotary_tables_off_ideal(const Finding& finding) {
   return fmt::format(
       "tables of rotary axes are up to {:.2f} um off what their types could correct: what changes within one "
@@ -167,6 +175,7 @@ std::span<const SentenceMaker> error_sentences() {
       {FindingCode::RotaryErrorsPartlyInTables, rotary_partly_in_tables},
       {FindingCode::RotaryErrorsUnknownToTables, rotary_unknown_to_tables},
       {FindingCode::LeversOfTiltedHead, levers_of_tilted_head},
+      {FindingCode::TablesOffIdeal, tables_off_ideal},
       {FindingCode::RotaryTablesOffIdeal, rotary_tables_off_ideal},
       {FindingCode::TablesLeaveMore, tables_leave_more},
       {FindingCode::RotaryErrorsNotInModel, rotary_not_in_model},

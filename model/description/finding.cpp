@@ -103,6 +103,7 @@ constexpr auto kFindingCodes = [] {
       {RotaryErrorsPartlyInTables, "errors.rotary-partly-in-tables", Severity::Warning},
       {RotaryErrorsUnknownToTables, "errors.rotary-unknown-to-tables", Severity::Warning},
       {LeversOfTiltedHead, "compensation.levers-of-tilted-head", Severity::Warning},
+      {TablesOffIdeal, "compensation.tables-off-ideal", Severity::Warning},
       {RotaryTablesOffIdeal, "compensation.rotary-tables-off-ideal", Severity::Warning},
       {TablesLeaveMore, "compensation.tables-leave-more", Severity::Failure},
       {RotaryErrorsNotInModel, "errors.rotary-not-in-model", Severity::Warning},

@@ -99,6 +99,7 @@ enum class FindingCode : std::uint8_t {
   RotaryErrorsPartlyInTables,
   RotaryErrorsUnknownToTables,
   LeversOfTiltedHead,
+  TablesOffIdeal,
   RotaryTablesOffIdeal,
   TablesLeaveMore,
   RotaryErrorsNotInModel,

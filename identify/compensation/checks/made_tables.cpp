@@ -53,6 +53,15 @@ void report_levers(const Machine& machine, MadeTables& made) {
                             {"max", in_micrometres(made.all_axes->levers.max)}}});
 }
 
+/// Positions that were not chosen by a tolerance.
+void report_step(const FitResult& result, MadeTables& made) {
+  const CompensationLimits& limits = made.format->limits;
+  if (made.tolerance > 0.0 || !limits.sampled || made.options.type.linear().empty()) return;
+  const double off = deviation_of(*made.format, result, made.options, made.read_back);
+  if (off > kCoarseStep * kDefaultTableTolerance + 0.5 * limits.resolution)
+    made.cautions.push_back({FindingCode::TablesOffIdeal, {{"off", in_micrometres(off)}}});
+}
+
 void report_rotary_step(double tolerance, MadeTables& made) {
   if (!made.rotary_check || made.rotary_check->deviation <= kCoarseStep * tolerance) return;
   made.cautions.push_back(
@@ -96,6 +105,7 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
   made.effects_left_out = left_out_by(made.options.type, result);
   report_unknown_axes(result, made.cautions);
   report_levers(result.machine, made);
+  report_step(result, made);
   report_rotary_step(wanted, made);
   report_more_than_none(made);
   return made;

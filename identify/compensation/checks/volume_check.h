@@ -69,6 +69,11 @@ struct StepChoice {
   bool reached = false;    ///< deviation within the tolerance
 };
 
+/// Largest difference of a component between tables, read back, and what their format samples of the ideal
+/// compensation, in the volume, m.
+double deviation_of(const TableFormat& format, const FitResult& result, const TableFormatOptions& options,
+                    const CompensationTables& tables);
+
 /// The largest step of 1, 2 or 5 x 10^n mm whose tables, read back, follow the ideal compensation, of a
 /// format without coupled axes the nearest that a rigid body has, within `tolerance` (m) plus half the
 /// format's resolution, which rounding takes; where the controller's limits forbid that, the best one that

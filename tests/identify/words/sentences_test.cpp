@@ -631,6 +631,9 @@ const std::vector<WordedFinding>& examples() {
        "tables of linear axes are made with the rotary axes at 0: where the head (CB) is tilted, angles of "
        "linear axes act by another lever, which leaves 1.90 um RMS, 4.30 um at most over all poses; volcal "
        "compensate corrects a program with the axes where they stand"},
+      {{FindingCode::TablesOffIdeal, {{"off", FindingNumber{4.2e-6, "um", 1e-6}}}},
+       "between their positions the tables are up to 4.20 um off the ideal compensation: --tolerance takes "
+       "as many positions as that needs, --step or --positions as many as they say"},
       {{FindingCode::RotaryTablesOffIdeal, {{"off", FindingNumber{12.3e-6, "um", 1e-6}}}},
        "tables of rotary axes are up to 12.30 um off what their types could correct: what changes within one "
        "of "

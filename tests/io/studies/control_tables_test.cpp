@@ -138,7 +138,7 @@ TEST(ControlTables, ProductsOfTablesAreTheIdealCompensation) {
       TableFormatOptions options;
       options.type = info.type;
       options.tool = "side_x";
-      options.step = 13e-3;
+      options.step = 10e-3;
       options.settings = testing::example_settings(format);
       const auto control =
           sim::command_correction({control_tables(format, write_tables(format, result, options)), 0.0, {}});

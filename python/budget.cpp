@@ -74,9 +74,7 @@ FitResult errors_of(const py::object& given, const std::string& file, std::optio
     throw InputError({}, "tolerances are of a machine that is not built yet", "give a Machine with them");
   if (py::isinstance<Result>(given)) return given.cast<const Result&>().result;
   const auto& model = given.cast<const Model&>();
-  if (!states_errors(model.spec))
-    throw InputError({}, "the model states no error: no coefficients, no locations, no effects",
-                     "give a model with values, such as result.model, or a Machine with tolerances");
+  require_stated_errors(model.spec);
   return stated_result(model.machine, model.spec);
 }
 

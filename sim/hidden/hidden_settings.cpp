@@ -20,8 +20,12 @@ std::string station_of(const SetupPlan& plan) { return plan.options.text("statio
 
 }  // namespace
 
+InputError HiddenSettings::error(const std::string& problem, const std::string& remedy) const {
+  return {effect_.place, role_ + effect_.kind + ": " + problem, remedy};
+}
+
 void HiddenSettings::fail(const std::string& problem, const std::string& remedy) const {
-  throw InputError(effect_.place, role_ + effect_.kind + ": " + problem, remedy);
+  throw error(problem, remedy);
 }
 
 double HiddenSettings::number(const std::string& stem, double otherwise) const {

@@ -61,6 +61,8 @@ class HiddenSettings {
 
   Eigen::Vector3d middle_of_travel() const;  ///< machine coordinates, of the linear axes
 
+  /// At the effect's place, to be thrown later.
+  InputError error(const std::string& problem, const std::string& remedy) const;
   [[noreturn]] void fail(const std::string& problem, const std::string& remedy) const;
 
  private:

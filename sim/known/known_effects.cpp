@@ -49,11 +49,20 @@ const KnownKind& known_kind_of(const HiddenEffect& effect) {
                    "leave it out of a copy of the model, or hide it in the study as a [[hidden]] effect");
 }
 
+void require_amplitude(const HiddenEffect& effect) {
+  constexpr const char* kAmplitudes[] = {"amplitude", "coefficients", "cos", "sin", "x", "y", "z"};
+  if (std::ranges::any_of(kAmplitudes, [&](const char* stem) { return effect.options.has(stem); })) return;
+  throw InputError(effect.place,
+                   "effect of the known errors " + effect.kind + ": it states no amplitude and does nothing",
+                   "state it, or leave the effect out");
+}
+
 }  // namespace
 
 void add_known_effects(const ModelSpec& errors, const HiddenContext& context, HiddenScene& scene) {
   for (const EffectSpec& spec : errors.effects) {
     const HiddenEffect effect{spec.kind, spec.options, {}, {}, {errors.file, spec.source_line}};
+    require_amplitude(effect);
     known_kind_of(effect).act(HiddenSettings(effect, 0.0, context, "effect of the known errors "), scene);
   }
 }

@@ -107,7 +107,10 @@ void add_to_target(const HiddenSettings& settings, const StateNumber& value, Hid
 /// A formula of muParser. Copies share its numbers, one after another.
 class KnownFormula {
  public:
-  explicit KnownFormula(const HiddenSettings& settings) : numbers_(std::make_shared<Numbers>()) {
+  explicit KnownFormula(const HiddenSettings& settings)
+      : numbers_(std::make_shared<Numbers>()),
+        not_finite_(settings.error("its expression is not finite at a pose of the study",
+                                   "write it so that it has a value everywhere, as in sqrt(max(0, z))")) {
     mu::Parser& parser = numbers_->parser;
     parser.DefineConst("pi", std::numbers::pi);
     try {
@@ -128,7 +131,9 @@ class KnownFormula {
   double operator()(const MachineState& state) const {
     const std::scoped_lock lock(numbers_->mutex);
     for (std::size_t i = 0; i < drivers_.size(); ++i) numbers_->values[i] = drivers_[i](state);
-    return numbers_->parser.Eval();
+    const double value = numbers_->parser.Eval();
+    if (!std::isfinite(value)) throw InputError(not_finite_);
+    return value;
   }
 
  private:
@@ -144,6 +149,7 @@ class KnownFormula {
   }
 
   std::shared_ptr<Numbers> numbers_;
+  InputError not_finite_;
   std::vector<StateNumber> drivers_;
 };
 

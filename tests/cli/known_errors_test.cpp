@@ -183,6 +183,15 @@ TEST_F(KnownErrors, AModelIsValidatedOnReadings) {
 TEST_F(KnownErrors, WhatMakesNoSenseIsRefusedWithARemedy) {
   write("empty.toml", "format = \"volcal-model-1\"\nmachine = \"" + testing::kDemoMachine + "\"\n");
   refused("budget " + path("empty.toml"), "states no error", "--tolerances");
+  const std::string load = "[[effects]]\nkind = \"reversal\"\nsymbol = \"EYX\"\n";
+  write("forgotten.toml", testing::content(path("known.toml")) + load);
+  const std::string root = "[[effects]]\nkind = \"custom\"\ntarget = \"EYX\"\namplitude_um = 1.0\n";
+  write("root.toml", testing::content(path("known.toml")) + root + "expression = \"sqrt(x - 1e4)\"\n");
+  for (const std::string command : {"budget ", "tables --dry-run "})
+    refused(command + path("forgotten.toml"), "reversal\": it states no amplitude", "add amplitude_um");
+  for (const auto& [model, problem] : {std::pair{"forgotten.toml", "reversal: it states no amplitude"},
+                                       std::pair{"root.toml", "is not finite at a pose"}})
+    refused("simulate " + path("study.toml") + " --errors " + path(model) + " -o " + path("c"), problem, "");
   write("other.toml",
         testing::content(path("known.toml")) +
             "[[effects]]\nkind = \"dead-path\"\nsetup = \"P1_short\"\namplitude_um_per_h = 1.0\n");

@@ -147,11 +147,7 @@ FitResult result_of_tables(const std::filesystem::path& folder) {
 
 FitResult result_of_model(const std::string& path, const SourcePlace& named_at) {
   const ModelFile model = read_model_with_machine(path, named_at);
-  if (!states_errors(model.spec))
-    throw InputError(
-        {path, 0}, "the model states no error: no coefficients, no locations, no effects",
-        "give a model with values, such as the identified.toml of a result; of a machine that is "
-        "not built yet, volcal budget MACHINE.toml --tolerances FILE");
+  require_stated_errors(model.spec);
   return stated_result(model.machine, model.spec);
 }
 

@@ -39,9 +39,9 @@ const TableFormat& format_named(const std::string& name) {
 }
 
 MadeTables tables_of(const Result& result, const std::string& format_name, const std::string& type,
-                     const std::string& tool, double step_mm, double tolerance_um, const py::dict& settings,
-                     const py::dict& conditions, int positions, int grid, const std::string& zero,
-                     const std::string& run, const py::dict& record) {
+                     const std::string& tool, double step_mm, double rotary_step_deg, double tolerance_um,
+                     const py::dict& settings, const py::dict& conditions, int positions, int grid,
+                     const std::string& zero, const std::string& run, const py::dict& record) {
   if (zero != "mean" && zero != "plus")
     throw InputError({}, "zero \"" + zero + "\" is not known", "choose \"mean\" or \"plus\"");
   const TableFormat& format = format_named(format_name);
@@ -52,6 +52,7 @@ MadeTables tables_of(const Result& result, const std::string& format_name, const
   options.type = type.empty() ? default_type(format, result.result) : CompensationType::parse(type);
   options.tool = tool;
   options.step = step_mm * kMetrePerMillimetre;
+  options.rotary_step = rotary_step_deg * kRadianPerDegree;
   options.settings = named_texts(settings);
   options.conditions = stated_conditions(result.result, named_texts(conditions));
   options.record = {run, named_texts(record)};
@@ -118,6 +119,10 @@ void define_tables(py::module_& module) {
           "step_mm", [](const MadeTables& made) { return made.options.step / kMetrePerMillimetre; },
           "Step between the positions of a table, mm; 0 where the format has positions of its own.")
       .def_property_readonly(
+          "rotary_step_deg",
+          [](const MadeTables& made) { return made.options.rotary_step / kRadianPerDegree; },
+          "Largest step between positions of rotary axes, deg; 0 where it is that of the format.")
+      .def_property_readonly(
           "type", [](const MadeTables& made) { return made.options.type.name(); },
           "What is compensated (ISO/TR 16907, 8.2): \"L-VOL\".")
       .def_property_readonly(
@@ -159,12 +164,14 @@ void define_tables(py::module_& module) {
       });
   module.def(
       "tables", &tables_of, py::arg("result"), py::kw_only(), py::arg("format") = "csv", py::arg("type") = "",
-      py::arg("tool") = "", py::arg("step_mm") = 0.0, py::arg("tolerance_um") = 0.0,
-      py::arg("settings") = py::dict(), py::arg("conditions") = py::dict(), py::arg("positions") = 0,
-      py::arg("grid") = 5, py::arg("zero") = "mean", py::arg("run") = "", py::arg("record") = py::dict(),
+      py::arg("tool") = "", py::arg("step_mm") = 0.0, py::arg("rotary_step_deg") = 0.0,
+      py::arg("tolerance_um") = 0.0, py::arg("settings") = py::dict(), py::arg("conditions") = py::dict(),
+      py::arg("positions") = 0, py::arg("grid") = 5, py::arg("zero") = "mean", py::arg("run") = "",
+      py::arg("record") = py::dict(),
       "Tables of an identified machine for a controller, as `volcal tables`: the same bytes.\n\n"
       "format: a name of table_formats(). type: \"L-POS\", \"L-STR\", \"L-SQU\", \"L-ANG\" joined by +, or "
-      "\"L-VOL\"; \"\" = all that the format can do. tool: \"\" = the machine's first. step_mm: 0 = chosen "
+      "\"L-VOL\"; \"\" = all that the format can do. tool: \"\" = the machine's first. step_mm, "
+      "rotary_step_deg: 0 = chosen "
       "so that "
       "the tables follow the ideal compensation within tolerance_um (0 = 0.2). settings: of the format, by "
       "name. "

@@ -327,6 +327,8 @@ class Tables:
     @property
     def step_mm(self) -> float: ...
     @property
+    def rotary_step_deg(self) -> float: ...
+    @property
     def type(self) -> str: ...
     @property
     def error_left(self) -> dict[str, Any]: ...
@@ -529,6 +531,7 @@ def tables(
     type: str = "",
     tool: str = "",
     step_mm: float = 0.0,
+    rotary_step_deg: float = 0.0,
     tolerance_um: float = 0.0,
     settings: Mapping[str, object] = ...,
     conditions: Mapping[str, float] = ...,

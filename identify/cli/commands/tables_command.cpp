@@ -230,10 +230,14 @@ void write_files(const FitResult& result, const MadeTables& made, const TablesAr
 }
 
 std::string step_text(const MadeTables& made) {
-  if (made.options.step == 0.0) return {};
-  std::string text = fmt::format(", step {:g} mm", made.options.step / kMetrePerMillimetre);
-  if (made.tolerance > 0.0)
-    text += fmt::format(", at most {:.2f} um off the ideal compensation", made.step.deviation / kMicro);
+  std::string text;
+  if (made.options.step > 0.0) {
+    text += fmt::format(", step {:g} mm", made.options.step / kMetrePerMillimetre);
+    if (made.tolerance > 0.0)
+      text += fmt::format(", at most {:.2f} um off the ideal compensation", made.step.deviation / kMicro);
+  }
+  if (made.options.rotary_step > 0.0)
+    text += fmt::format(", rotary axes at most {:g} deg", made.options.rotary_step / kRadianPerDegree);
   return text;
 }
 
@@ -272,6 +276,7 @@ nlohmann::ordered_json tables_json(const MadeTables& made, const TablesArguments
                                  {"step_mm", made.options.step / kMetrePerMillimetre},
                                  {"error_left", volume_check_json(made.check)},
                                  {"verified", made.format->verified}};
+  if (made.options.rotary_step > 0.0) json["rotary_step_deg"] = made.options.rotary_step / kRadianPerDegree;
   if (made.rotary_check) json["rotary_error_left"] = rotary_check_json(*made.rotary_check);
   if (made.all_axes) json["all_axes_error_left"] = all_axes_json(*made.all_axes);
   add_findings("effects_in_no_table", made.effects_left_out, json);

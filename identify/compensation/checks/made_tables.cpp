@@ -95,7 +95,7 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
     made.options.step = made.step.step;
   }
   if (format.step_of != nullptr) made.options.step = format.step_of(made.options);
-  if (made.options.rotary_step == 0.0 && !made.options.type.rotary().empty() && !own_positions)
+  if (made.options.rotary_step == 0.0 && !own_positions)
     made.options.rotary_step = choose_rotary_step(format, result, made.options, wanted);
   made.files = write_tables(format, result, made.options);
   made.read_back = format.read(made.files);

@@ -107,6 +107,7 @@ double choose_rotary_step(const TableFormat& format, const FitResult& result, Ta
                           double tolerance) {
   constexpr std::array<double, 5> kSteps = {0.0, 5.0, 2.0, 1.0, 0.5};  // deg
   constexpr double kAsGood = 0.95;
+  if (options.type.rotary().empty()) return options.rotary_step;
   double best = options.rotary_step, least = std::numeric_limits<double>::infinity();
   for (const double step : kSteps) {
     options.rotary_step = step * kRadianPerDegree;

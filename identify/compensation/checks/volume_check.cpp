@@ -167,6 +167,13 @@ std::optional<ErrorLeft> left_over_conditions(const FitResult& result, const Tab
   return over;
 }
 
+int places_inside(const std::vector<VolumePoint>& points) {
+  const auto from_plus = [](const VolumePoint& point) {
+    return point.inside && std::ranges::all_of(point.direction, [](int sign) { return sign >= 0; });
+  };
+  return static_cast<int>(std::ranges::count_if(points, from_plus));
+}
+
 /// Half of the approaches: directions of different axes are uncorrelated in them, as in all eight.
 double identification_uncertainty(const FitResult& result, const TableFormatOptions& options,
                                   const std::vector<VolumePoint>& points) {
@@ -198,6 +205,7 @@ VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& o
   const std::vector<VolumePoint> points = volume_points(machine, kVolumeCells);
 
   VolumeCheck check;
+  check.places = places_inside(points);
   check.before = error_left(machine, points, measured);
   check.ideal = error_left(machine, points, corrected(errors, ideal));
   check.exported = error_left(machine, points, exported);

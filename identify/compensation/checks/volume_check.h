@@ -38,6 +38,7 @@ struct ParallelLeft {
 
 /// Parallel axes U, V, W are at home, but for `over_parallel`.
 struct VolumeCheck {
+  int places = 0;  ///< of the volume, each approached from both sides of every axis
   ErrorLeft before;
   ErrorLeft ideal;     ///< ideal compensation of the type
   ErrorLeft exported;  ///< the tables

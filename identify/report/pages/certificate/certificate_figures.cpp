@@ -102,6 +102,8 @@ Json certificate_figures_page(const CertificateInput& input) {
   measured.push_back(measured_row("before", certificate.before));
   if (certificate.after) measured.push_back(measured_row("with the tables", *certificate.after));
   return {{"volume", volume_left_rows(certificate.tables)},
+          {"places", certificate.tables.check.places},
+          {"poses", certificate.tables.all_axes ? kAllAxesPoses : 0},
           {"parts", part_left_rows(certificate.tables.check)},
           {"rotary", rotary_left_rows(certificate.tables)},
           {"measured", std::move(measured)},

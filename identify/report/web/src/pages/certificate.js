@@ -80,7 +80,8 @@ export function renderCertificateFigures(body, data) {
   body.append(
     el('h3', {}, 'In the volume, computed'),
     table(leftColumns, data.volume),
-    note('Position of the functional point, actual minus nominal without its best rigid motion, at 729 places of the volume, each approached from both sides of every axis.'),
+    note(`Position of the functional point, actual minus nominal without its best rigid motion, at ${data.places} places of the volume, each approached from both sides of every axis`,
+      data.poses > 0 ? `; with all axes at ${data.poses} poses over their travel.` : '.'),
   );
   if (data.parts.length > 0) {
     body.append(el('h3', {}, 'By type of compensation'), table([

@@ -31,6 +31,11 @@ constexpr double kWorthADeparture = 5.0;
 // weights in numbers of 16 digits.
 constexpr double kLeastScale = 1e-3;
 
+// Coefficients of a function that readings must settle; below, its amplitude is widened.
+constexpr double kDetermined = 1.0;
+constexpr int kAmplitudesInADecade = 4;
+constexpr int kWideningSweeps = 2;
+
 // Of coefficients: what is expected of the spectrum of all linear axes counts little beside their eighteen
 // functions; what follows for one axis, beside its six, counts more.
 constexpr double kWorthOfShape = 1.0;
@@ -88,11 +93,18 @@ Posterior posterior(const Quadratic& cost, const Eigen::VectorXd& z0, const std:
   return result;
 }
 
-double updated_lambda(const Stretch& stretch, const PriorShape& shape, double lambda, const Posterior& now) {
+/// How many of a function's coefficients the readings settle beside its prior.
+double settled_by_readings(const Stretch& stretch, const PriorShape& shape, double lambda,
+                           const Posterior& now) {
   const Eigen::Index n = shape.precision.rows();
   const auto covariance = now.covariance.block(stretch.offset, stretch.offset, n, n);
+  return shape.rank - lambda * covariance.cwiseProduct(shape.precision).sum();
+}
+
+double updated_lambda(const Stretch& stretch, const PriorShape& shape, double lambda, const Posterior& now) {
+  const Eigen::Index n = shape.precision.rows();
   const Eigen::VectorXd z = now.mean.segment(stretch.offset, n);
-  const double used = shape.rank - lambda * covariance.cwiseProduct(shape.precision).sum();
+  const double used = settled_by_readings(stretch, shape, lambda, now);
   return std::clamp(std::max(used, 1e-6) / z.dot(shape.precision * z),
                     1.0 / (kLargestAmplitude * kLargestAmplitude),
                     1.0 / (kSmallestAmplitude * kSmallestAmplitude));
@@ -143,6 +155,15 @@ class AxisEvidence {
     cost_.gradient -= half.transpose() * half_gradient;
   }
 
+  const Quadratic& cost() const { return cost_; }
+  const Eigen::VectorXd& z0() const { return z0_; }
+  const std::vector<Stretch>& stretches() const { return stretches_; }
+
+  /// Of the one function that it is about.
+  double log_evidence(const Prior& prior, double lambda) const {
+    return posterior(cost_, z0_, stretches_, {prior}, {lambda}).log_evidence;
+  }
+
   /// A shape with its amplitudes, from those given.
   Choice with_shape(std::size_t shape, std::vector<double> lambda) const {
     std::vector<Prior> priors;
@@ -161,6 +182,31 @@ class AxisEvidence {
   Eigen::VectorXd z0_;
   Quadratic cost_;
 };
+
+/// Amplitude at which evidence and a prior on it, a exp(-a / kUsualAmplitude), are highest together; lambda.
+double widened_lambda(const AxisEvidence& evidence, const Prior& prior) {
+  const auto height = [&](double log_amplitude) {
+    const double amplitude = std::pow(10.0, log_amplitude);
+    return evidence.log_evidence(prior, 1.0 / (amplitude * amplitude)) + std::log(amplitude) -
+           amplitude / kUsualAmplitude;
+  };
+  const double from = std::log10(kSmallestAmplitude), to = std::log10(kLargestAmplitude);
+  const int steps = static_cast<int>(std::lround((to - from) * kAmplitudesInADecade));
+  double best = from, highest = -std::numeric_limits<double>::infinity();
+  const auto take_if_higher = [&](double log_amplitude) {
+    const double at = height(log_amplitude);
+    if (at <= highest) return;
+    highest = at;
+    best = log_amplitude;
+  };
+  for (int i = 0; i <= steps; ++i) take_if_higher(from + static_cast<double>(i) / kAmplitudesInADecade);
+  for (double step = 0.5 / kAmplitudesInADecade; step > 0.01; step *= 0.5) {
+    const double middle = best;
+    take_if_higher(middle - step);
+    take_if_higher(middle + step);
+  }
+  return std::pow(10.0, -2.0 * best);
+}
 
 /// Shapes tried for one axis: around the best length of every kind, and those asked for.
 class AxisShapes {
@@ -285,9 +331,12 @@ class EvidenceSearch {
     }
     if (corrected.shape != at.shape) corrected = at;
     const double with_correction = settle(corrected, Spectra::Corrected);
-    if (with_correction <= log_evidence) return log_evidence;
-    at = corrected;
-    return with_correction;
+    if (with_correction > log_evidence) {
+      at = corrected;
+      log_evidence = with_correction;
+    }
+    widen_undetermined(at);
+    return log_evidence;
   }
 
  private:
@@ -335,6 +384,49 @@ class EvidenceSearch {
       if (std::abs(now.log_evidence - before) < kSettled) break;
     }
     return now.log_evidence;
+  }
+
+  /// Functions of which the readings settle less than a coefficient.
+  std::vector<std::size_t> undetermined(const Hyperparameters& at) const {
+    const Posterior now = posterior(readings_and_priors(at.scale), z0_, stretches_, at.prior, at.lambda);
+    std::vector<std::size_t> terms;
+    for (std::size_t t = 0; t < stretches_.size(); ++t) {
+      if (stretches_[t].term->is_function() &&
+          settled_by_readings(stretches_[t], *at.prior[t], at.lambda[t], now) < kDetermined)
+        terms.push_back(t);
+    }
+    return terms;
+  }
+
+  /// Their evidence is often highest at no amplitude at all, and their intervals would be those of functions
+  /// that are known to be straight.
+  void widen_undetermined(Hyperparameters& at) const {
+    const std::vector<std::size_t> terms = undetermined(at);
+    if (terms.empty()) return;
+    const AxisEvidence together = axis_evidence(terms, at);
+    for (int sweep = 0; sweep < kWideningSweeps; ++sweep) {
+      for (std::size_t i = 0; i < terms.size(); ++i)
+        at.lambda[terms[i]] = widened_lambda(one_of(together, terms, i, at), at.prior[terms[i]]);
+    }
+  }
+
+  /// Of one of the functions of `together`, the others smoothed as they are.
+  AxisEvidence one_of(const AxisEvidence& together, const std::vector<std::size_t>& terms, std::size_t one,
+                      const Hyperparameters& at) const {
+    Quadratic all = together.cost();
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      if (i == one) continue;
+      add_smoothing_of(at, terms[i], together.stretches()[i].offset, together.z0(), all);
+    }
+    return {all, together.z0(), {together.stretches()[one]}};
+  }
+
+  static void add_smoothing_of(const Hyperparameters& at, std::size_t term, int offset,
+                               const Eigen::VectorXd& z0, Quadratic& all) {
+    const Eigen::MatrixXd smoothing = at.lambda[term] * at.prior[term]->precision;
+    const Eigen::Index n = smoothing.rows();
+    all.precision.block(offset, offset, n, n) += smoothing;
+    all.gradient.segment(offset, n) += smoothing * z0.segment(offset, n);
   }
 
   void use_shapes(Hyperparameters& at) const {
@@ -438,11 +530,7 @@ class EvidenceSearch {
     std::ranges::transform(terms, mine.begin(), [&](std::size_t t) { return stretches_[t]; });
     for (std::size_t t = 0; t < stretches_.size(); ++t) {
       if (std::ranges::find(terms, t) != terms.end()) continue;
-      const auto& [term, offset] = stretches_[t];
-      const Eigen::MatrixXd smoothing = at.lambda[t] * at.prior[t]->precision;
-      const Eigen::Index n = smoothing.rows();
-      all.precision.block(offset, offset, n, n) += smoothing;
-      all.gradient.segment(offset, n) += smoothing * z0_.segment(offset, n);
+      add_smoothing_of(at, t, stretches_[t].offset, z0_, all);
     }
     return {all, z0_, mine};
   }

@@ -12,7 +12,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kStartAmplitude = 5e-6;    // m or rad
 constexpr double kSpreadOfLogLambda = 3.0;  // before any reading
 constexpr double kHardlySmoothed = 1e-3;    // of lambda: thirty times the amplitude
 constexpr int kStartPlace = 6;
@@ -37,7 +36,7 @@ std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const 
     }
     if (family->shapes().empty()) continue;
     terms.push_back({function.symbol, function.offset, family, kStartPlace,
-                     1.0 / (kStartAmplitude * kStartAmplitude), family->shapes()[kStartPlace]});
+                     1.0 / (kUsualAmplitude * kUsualAmplitude), family->shapes()[kStartPlace]});
   }
   for (const EffectBinding& effect : model.binding().effects) {
     if (effect.effect->surface() == nullptr) continue;
@@ -53,7 +52,7 @@ SmoothingTerm surface_term(const TensorBasis& basis, int offset) {
   term.offset = offset;
   term.surface = std::make_shared<const SurfacePriors>(basis);
   term.shape = term.surface->middle();
-  term.lambda = 1.0 / (kStartAmplitude * kStartAmplitude);
+  term.lambda = 1.0 / (kUsualAmplitude * kUsualAmplitude);
   term.prior = term.shapes()[term.shape];
   return term;
 }

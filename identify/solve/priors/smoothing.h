@@ -12,6 +12,8 @@
 
 namespace volcal {
 
+inline constexpr double kUsualAmplitude = 5e-6;  ///< before any reading, m or rad
+
 /// Of a function or of a surface.
 struct SmoothingTerm {
   ErrorSymbol symbol = {};                            ///< of a function

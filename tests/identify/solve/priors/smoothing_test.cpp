@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -314,6 +315,31 @@ TEST(SmoothingTerms, AreAlikeUpToAQuarterOfAnAmplitude) {
   EXPECT_FALSE(alike(terms, others));
   others.pop_back();
   EXPECT_FALSE(alike(terms, others));
+}
+
+/// Readings on a straight line: the likelihood of an amplitude is highest at none, and so is that of the
+/// function's interval. With the prior a exp(-a / 5 um) it is highest where the dense likelihood says.
+TEST(MaximiseEvidence, KnowsNoFunctionToBeStraight) {
+  for (const double sigma : {0.2e-6, 3e-6}) {
+    DirectReadings readings(6, {1e-6});
+    readings.equations[0].matrix *= std::pow(readings.sigma / sigma, 2);
+    readings.sigma = sigma;
+    readings.set_values([](std::size_t /*function*/, double q) { return 5e-6 * q; });
+    readings.maximise();
+    const SmoothingTerm& term = readings.terms[0];
+    ASSERT_EQ(term.prior, term.family->shapes()[term.shape]);
+    const Eigen::MatrixXd of_unit = readings.of_kernel(*term.prior);
+    double best = 0.0, highest = -std::numeric_limits<double>::infinity();
+    for (double amplitude = 1e-9; amplitude < 1e-4; amplitude *= 1.02) {
+      const double height = readings.log_density(of_unit, {1.0 / (amplitude * amplitude)}) +
+                            std::log(amplitude) - amplitude / 5e-6;
+      if (height <= highest) continue;
+      highest = height;
+      best = amplitude;
+    }
+    EXPECT_GT(best, 0.05 * sigma);
+    EXPECT_NEAR(1.0 / std::sqrt(term.lambda), best, 0.05 * best) << sigma;
+  }
 }
 
 TEST(MaximiseEvidence, FindsTheHighestPointOfTheDenseLikelihood) {

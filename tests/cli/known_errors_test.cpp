@@ -189,7 +189,7 @@ TEST_F(KnownErrors, WhatMakesNoSenseIsRefusedWithARemedy) {
   write("root.toml", testing::content(path("known.toml")) + root + "expression = \"sqrt(x - 1e4)\"\n");
   for (const std::string command : {"budget ", "tables --dry-run "})
     refused(command + path("forgotten.toml"), "reversal\": it states no amplitude", "add amplitude_um");
-  for (const auto& [model, problem] : {std::pair{"forgotten.toml", "reversal: it states no amplitude"},
+  for (const auto& [model, problem] : {std::pair{"forgotten.toml", "it states no amplitude"},
                                        std::pair{"root.toml", "is not finite at a pose"}})
     refused("simulate " + path("study.toml") + " --errors " + path(model) + " -o " + path("c"), problem, "");
   write("other.toml",

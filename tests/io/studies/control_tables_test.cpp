@@ -133,12 +133,15 @@ TEST(ControlTables, ProductsOfTablesAreTheIdealCompensation) {
     const sim::TruthMachine truth =
         sim::random_truth(sim::reference_machines()[structure], 40 + structure, truth_options);
     const FitResult result = testing::result_of(truth, 20);
+    constexpr double kMostSteps = 190.0;  // of a table's 200 positions
+    double longest_travel = 0.0;
+    for (const Axis& axis : truth.machine().axes) longest_travel = std::max(longest_travel, axis.travel());
     for (const CompensationTypeInfo& info : compensation_types()) {
       if (!info.type.rotary().empty()) continue;
       TableFormatOptions options;
       options.type = info.type;
       options.tool = "side_x";
-      options.step = 10e-3;
+      options.step = longest_travel / kMostSteps;
       options.settings = testing::example_settings(format);
       const auto control =
           sim::command_correction({control_tables(format, write_tables(format, result, options)), 0.0, {}});

@@ -16,6 +16,7 @@
 #include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/sim/machine/control.h"
 #include "volcal/studies/files/control_tables.h"
 

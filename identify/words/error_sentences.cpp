@@ -108,32 +108,28 @@ std::string levers_of_tilted_head(const Finding& finding) {
   return fmt::format(
       "tables of linear axes are made with the rotary axes at 0: where the head ({}) is tilted, angles of "
       "linear axes act by another lever, which leaves {:.2f} um RMS, {:.2f} um at most over all poses; "
-      "volcal "
-      "compensate corrects a program with the axes where they stand",
+      "volcal compensate corrects a program with the axes where they stand",
       finding.text("axes"), finding.number("rms").in_unit(), finding.number("max").in_unit());
 }
 
 std::string tables_off_ideal(const Finding& finding) {
   return fmt::format(
       "between their positions the tables are up to {:.2f} um off the ideal compensation: --tolerance takes "
-      "as "
-      "many positions as that needs, --step or --positions as many as they say",
+      "as many positions as that needs, --step or --positions as many as they say",
       finding.number("off").in_unit());
 }
 
 std::string rotary_tables_off_ideal(const Finding& finding) {
   return fmt::format(
       "tables of rotary axes are up to {:.2f} um off what their types could correct: what changes within one "
-      "of "
-      "their steps, as the errors of a worm, needs a finer --rotary-step",
+      "of their steps, as the errors of a worm, needs a finer --rotary-step",
       finding.number("off").in_unit());
 }
 
 std::string tables_leave_more(const Finding& finding) {
   return fmt::format(
       "the machine errs by {:.2f} um RMS with these tables and by {:.2f} without: do not load them; take a "
-      "finer "
-      "--step, --positions or --rotary-step, a format that holds more positions, or fewer types",
+      "finer --step, --positions or --rotary-step, a format that holds more positions, or fewer types",
       finding.number("with").in_unit(), finding.number("without").in_unit());
 }
 

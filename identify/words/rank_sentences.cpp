@@ -110,8 +110,7 @@ std::string remedy_in_words(const std::string& remedy, const Finding& finding) {
            "errors";
   if (remedy == "linear-axes")
     return "measure the linear axes, too, with the rotary axes at 0 (tracer, straightness, square): what "
-           "they "
-           "do while they follow is else one with it";
+           "they do while they follow is else one with it";
   if (remedy == "spheres") return "measure at three places on the table that lie on no line";
   if (remedy == "mandrel")
     return "add a mandrel whose tip lies 60 mm or more to the side of the spindle's axis";

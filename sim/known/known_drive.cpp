@@ -29,25 +29,27 @@ std::vector<ErrorSymbol> symbols_of(const HiddenSettings& settings) {
   return symbols;
 }
 
+/// Half of the amplitude towards +, half taken off towards -.
+StateNumber half_by_approach(AxisName axis) {
+  return [d = approach_of(axis)](const MachineState& state) { return 0.5 * d(state); };
+}
+
 void known_reversal(const HiddenSettings& settings, HiddenScene& scene) {
-  const ErrorSymbol symbol = settings.symbol();
-  scene.machine.add_state_error(symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis)](
-                                            const MachineState& state) { return half * d(state); });
+  add_motion(settings, half_by_approach(settings.symbol().axis), scene);
 }
 
 void known_common_reversal(const HiddenSettings& settings, HiddenScene& scene) {
-  for (const ErrorSymbol symbol : symbols_of(settings)) {
-    scene.machine.add_state_error(symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis)](
-                                              const MachineState& state) { return half * d(state); });
-  }
+  for (const ErrorSymbol symbol : symbols_of(settings))
+    add_motion(settings, symbol, half_by_approach(symbol.axis), scene);
+}
+
+/// A reversal that changes in proportion to something.
+void add_growing_reversal(const HiddenSettings& settings, const StateNumber& with, HiddenScene& scene) {
+  add_motion(settings, product_of(half_by_approach(settings.symbol().axis), with), scene);
 }
 
 void known_position_reversal(const HiddenSettings& settings, HiddenScene& scene) {
-  const ErrorSymbol symbol = settings.symbol();
-  scene.machine.add_state_error(symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis),
-                                         q = from_home(settings, symbol.axis)](const MachineState& state) {
-    return half * d(state) * q(state);
-  });
+  add_growing_reversal(settings, from_home(settings, settings.symbol().axis), scene);
 }
 
 /// Of the axis' position from home, with the amplitudes `cos` and `sin`.
@@ -73,37 +75,26 @@ void known_subdivision(const HiddenSettings& settings, HiddenScene& scene) {
 }
 
 void known_curved_reversal(const HiddenSettings& settings, HiddenScene& scene) {
-  const ErrorSymbol symbol = settings.symbol();
-  scene.machine.add_state_error(symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis),
-                                         q = from_home(settings, symbol.axis)](const MachineState& state) {
-    return half * d(state) * q(state) * q(state);
-  });
+  const StateNumber q = from_home(settings, settings.symbol().axis);
+  add_growing_reversal(settings, product_of(q, q), scene);
 }
 
 void known_thermal_reversal(const HiddenSettings& settings, HiddenScene& scene) {
-  const ErrorSymbol symbol = settings.symbol();
-  scene.machine.add_state_error(
-      symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis),
-               excess = settings.excess_temperature("temperature")](const MachineState& state) {
-        return half * d(state) * excess(state);
-      });
+  add_growing_reversal(settings, settings.excess_temperature("temperature"), scene);
 }
 
 void known_pre_travel(const HiddenSettings& settings, HiddenScene& scene) {
-  const ErrorSymbol symbol = settings.symbol();
-  scene.machine.add_state_error(symbol, [half = 0.5 * amplitude_of(settings), d = approach_of(symbol.axis),
-                                         length = settings.positive("length", kUsualLength),
-                                         k = index_of(symbol.axis)](const MachineState& state) {
-    return half * d(state) * std::exp(-state.since_reversal[k] / length);
-  });
+  add_growing_reversal(
+      settings,
+      [length = settings.positive("length", kUsualLength), k = index_of(settings.symbol().axis)](
+          const MachineState& state) { return std::exp(-state.since_reversal[k] / length); },
+      scene);
 }
 
 void known_growing_lead_error(const HiddenSettings& settings, HiddenScene& scene) {
-  const StateNumber q = from_home(settings, settings.symbol().axis);
-  scene.machine.add_state_error(settings.symbol(),
-                                [q, wave = wave_of(settings, kUsualLead)](const MachineState& state) {
-                                  return q(state) * wave(state);
-                                });
+  const ErrorSymbol symbol = settings.symbol();
+  scene.machine.add_state_error(symbol,
+                                product_of(from_home(settings, symbol.axis), wave_of(settings, kUsualLead)));
 }
 
 void known_rack_error(const HiddenSettings& settings, HiddenScene& scene) {

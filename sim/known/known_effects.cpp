@@ -21,6 +21,20 @@ Eigen::Vector3d vector_of(const HiddenSettings& settings) {
   return {settings.number("x", 0.0), settings.number("y", 0.0), settings.number("z", 0.0)};
 }
 
+StateNumber product_of(const StateNumber& one, const StateNumber& other) {
+  return [one, other](const MachineState& state) { return one(state) * other(state); };
+}
+
+void add_motion(const HiddenSettings& settings, ErrorSymbol symbol, const StateNumber& driver,
+                HiddenScene& scene) {
+  scene.machine.add_state_error(
+      symbol, [a = amplitude_of(settings), driver](const MachineState& state) { return a * driver(state); });
+}
+
+void add_motion(const HiddenSettings& settings, const StateNumber& driver, HiddenScene& scene) {
+  add_motion(settings, settings.symbol(), driver, scene);
+}
+
 void move_tool(const Eigen::Vector3d& full, const StateNumber& driver, HiddenScene& scene) {
   scene.interference.tool.emplace_back(
       [full, driver](const Occasion& occasion) -> Eigen::Vector3d { return full * driver(occasion.state); });
@@ -49,20 +63,11 @@ const KnownKind& known_kind_of(const HiddenEffect& effect) {
                    "leave it out of a copy of the model, or hide it in the study as a [[hidden]] effect");
 }
 
-void require_amplitude(const HiddenEffect& effect) {
-  constexpr const char* kAmplitudes[] = {"amplitude", "coefficients", "cos", "sin", "x", "y", "z"};
-  if (std::ranges::any_of(kAmplitudes, [&](const char* stem) { return effect.options.has(stem); })) return;
-  throw InputError(effect.place,
-                   "effect of the known errors " + effect.kind + ": it states no amplitude and does nothing",
-                   "state it, or leave the effect out");
-}
-
 }  // namespace
 
 void add_known_effects(const ModelSpec& errors, const HiddenContext& context, HiddenScene& scene) {
   for (const EffectSpec& spec : errors.effects) {
     const HiddenEffect effect{spec.kind, spec.options, {}, {}, {errors.file, spec.source_line}};
-    require_amplitude(effect);
     known_kind_of(effect).act(HiddenSettings(effect, 0.0, context, "effect of the known errors "), scene);
   }
 }

@@ -25,7 +25,12 @@ std::vector<KnownKind> known_open_kinds();
 StateNumber from_home(const HiddenSettings& settings, AxisName axis);  ///< m or rad
 StateNumber approach_of(AxisName axis);                                ///< -1, 0, 1
 double amplitude_of(const HiddenSettings& settings);                   ///< of the key `amplitude`
-Eigen::Vector3d vector_of(const HiddenSettings& settings);             ///< of the keys `x`, `y`, `z`
+StateNumber product_of(const StateNumber& one, const StateNumber& other);
+Eigen::Vector3d vector_of(const HiddenSettings& settings);  ///< of the keys `x`, `y`, `z`
+/// An error motion of the effect's amplitude times `driver`, of the key `symbol` or stated.
+void add_motion(const HiddenSettings& settings, const StateNumber& driver, HiddenScene& scene);
+void add_motion(const HiddenSettings& settings, ErrorSymbol symbol, const StateNumber& driver,
+                HiddenScene& scene);
 /// The tool's offset grows along a vector, m, as `driver` says.
 void move_tool(const Eigen::Vector3d& full, const StateNumber& driver, HiddenScene& scene);
 

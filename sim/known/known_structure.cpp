@@ -11,39 +11,36 @@ namespace {
 void known_axis_coupling(const HiddenSettings& settings, HiddenScene& scene) {
   const std::string shape = settings.text("shape", "linear");
   const double power = shape == "cubic" ? 3.0 : shape == "quadratic" ? 2.0 : 1.0;
-  scene.machine.add_state_error(
-      settings.symbol(), [a = amplitude_of(settings), q = from_home(settings, settings.other_axis("axis")),
-                          power](const MachineState& state) { return a * std::pow(q(state), power); });
+  add_motion(
+      settings,
+      [q = from_home(settings, settings.other_axis("axis")), power](const MachineState& state) {
+        return std::pow(q(state), power);
+      },
+      scene);
 }
 
 void known_product_coupling(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.machine.add_state_error(
-      settings.symbol(), [a = amplitude_of(settings), first = from_home(settings, settings.axis("axis")),
-                          second = from_home(settings, settings.axis("second_axis"))](
-                             const MachineState& state) { return a * first(state) * second(state); });
+  add_motion(settings,
+             product_of(from_home(settings, settings.axis("axis")),
+                        from_home(settings, settings.axis("second_axis"))),
+             scene);
 }
 
 void known_tool_load(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.machine.add_state_error(
-      settings.symbol(), [a = amplitude_of(settings), tool = settings.tool()](const MachineState& state) {
-        return state.tool == tool ? a : 0.0;
-      });
+  add_motion(
+      settings,
+      [tool = settings.tool()](const MachineState& state) { return state.tool == tool ? 1.0 : 0.0; }, scene);
 }
 
 void known_triple_coupling(const HiddenSettings& settings, HiddenScene& scene) {
-  std::vector<StateNumber> factors;
+  StateNumber product = [](const MachineState& /*state*/) { return 1.0; };
   std::istringstream words(settings.text("axes", ""));
   for (std::string word; words >> word;) {
     const auto axis = word.size() == 1 ? axis_from_letter(word[0]) : std::nullopt;
     if (!axis) settings.fail("\"" + word + "\" is no axis", "write axes = \"Y Z Z\" for y z^2");
-    factors.push_back(from_home(settings, *axis));
+    product = product_of(product, from_home(settings, *axis));
   }
-  scene.machine.add_state_error(settings.symbol(),
-                                [a = amplitude_of(settings), factors](const MachineState& state) {
-                                  double product = a;
-                                  for (const StateNumber& factor : factors) product *= factor(state);
-                                  return product;
-                                });
+  add_motion(settings, product, scene);
 }
 
 /// What gravity does to a body that tilts.
@@ -55,18 +52,17 @@ StateNumber load_of_tilt(const HiddenSettings& settings) {
 }
 
 void known_tilt_load(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.machine.add_state_error(settings.symbol(),
-                                [a = amplitude_of(settings), load = load_of_tilt(settings)](
-                                    const MachineState& state) { return a * load(state); });
+  add_motion(settings, load_of_tilt(settings), scene);
 }
 
 void known_cradle_coupling(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.machine.add_state_error(
-      settings.symbol(), [of_cosine = settings.number("cos", 0.0), of_sine = settings.number("sin", 0.0),
-                          load = load_of_tilt(settings),
-                          q = from_home(settings, settings.symbol().axis)](const MachineState& state) {
-        return load(state) * (of_cosine * std::cos(q(state)) + of_sine * std::sin(q(state)));
-      });
+  const ErrorSymbol symbol = settings.symbol();
+  const StateNumber once_a_turn = [of_cosine = settings.number("cos", 0.0),
+                                   of_sine = settings.number("sin", 0.0),
+                                   q = from_home(settings, symbol.axis)](const MachineState& state) {
+    return of_cosine * std::cos(q(state)) + of_sine * std::sin(q(state));
+  };
+  scene.machine.add_state_error(symbol, product_of(load_of_tilt(settings), once_a_turn));
 }
 
 }  // namespace

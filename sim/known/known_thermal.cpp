@@ -7,11 +7,12 @@ namespace volcal::sim {
 namespace {
 
 constexpr double kUsualHeating = 1800.0;  // s, where a model states no time constant
+constexpr double kUsualGrowth = 3600.0;   // s
 constexpr double kUsualLag = 3600.0;      // s
 constexpr double kUsualCore = 1800.0;     // s
 
-StateNumber warmed_up(const HiddenSettings& settings) {
-  return [tau = settings.positive("time_constant", kUsualHeating)](const MachineState& state) {
+StateNumber warmed_up(const HiddenSettings& settings, double usual_time_constant) {
+  return [tau = settings.positive("time_constant", usual_time_constant)](const MachineState& state) {
     return 1.0 - std::exp(-state.time / tau);
   };
 }
@@ -23,58 +24,39 @@ StateNumber late_excess(const HiddenSettings& settings) {
   };
 }
 
+/// The scale of an axis grows from home.
+void add_scale(const HiddenSettings& settings, AxisName axis, const StateNumber& driver, HiddenScene& scene) {
+  add_motion(settings, positioning_of(axis), product_of(driver, from_home(settings, axis)), scene);
+}
+
 void known_common_expansion(const HiddenSettings& settings, HiddenScene& scene) {
-  for (const AxisName axis : settings.linear_axes("axes")) {
-    scene.machine.add_state_error(
-        positioning_of(axis),
-        [a = amplitude_of(settings), excess = settings.excess_temperature("temperature"),
-         q = from_home(settings, axis)](const MachineState& state) { return a * excess(state) * q(state); });
-  }
+  for (const AxisName axis : settings.linear_axes("axes"))
+    add_scale(settings, axis, settings.excess_temperature("temperature"), scene);
 }
 
 void known_common_growth(const HiddenSettings& settings, HiddenScene& scene) {
-  constexpr double kUsualGrowth = 3600.0;  // s
-  for (const AxisName axis : settings.linear_axes("axes")) {
-    scene.machine.add_state_error(
-        positioning_of(axis),
-        [a = amplitude_of(settings), tau = settings.positive("time_constant", kUsualGrowth),
-         q = from_home(settings, axis)](const MachineState& state) {
-          return a * q(state) * (1.0 - std::exp(-state.time / tau));
-        });
-  }
+  for (const AxisName axis : settings.linear_axes("axes"))
+    add_scale(settings, axis, warmed_up(settings, kUsualGrowth), scene);
 }
 
 void known_screw_heating(const HiddenSettings& settings, HiddenScene& scene) {
-  const AxisName axis = settings.linear_axis("axis");
-  scene.machine.add_state_error(
-      positioning_of(axis),
-      [a = amplitude_of(settings), q = from_home(settings, axis),
-       growth = warmed_up(settings)](const MachineState& state) { return a * q(state) * growth(state); });
+  add_scale(settings, settings.linear_axis("axis"), warmed_up(settings, kUsualHeating), scene);
 }
 
 void known_scale_expansion(const HiddenSettings& settings, HiddenScene& scene) {
-  const AxisName axis = settings.linear_axis("axis");
-  scene.machine.add_state_error(
-      positioning_of(axis), [a = amplitude_of(settings), q = from_home(settings, axis),
-                             excess = settings.excess_temperature("temperature")](const MachineState& state) {
-        return a * excess(state) * q(state);
-      });
+  add_scale(settings, settings.linear_axis("axis"), settings.excess_temperature("temperature"), scene);
 }
 
 void known_thermal_drift(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.machine.add_state_error(
-      settings.symbol(), [a = amplitude_of(settings), excess = settings.excess_temperature("temperature")](
-                             const MachineState& state) { return a * excess(state); });
+  add_motion(settings, settings.excess_temperature("temperature"), scene);
 }
 
 void known_lagged_temperature(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.machine.add_state_error(settings.symbol(),
-                                [a = amplitude_of(settings), excess = late_excess(settings)](
-                                    const MachineState& state) { return a * excess(state); });
+  add_motion(settings, late_excess(settings), scene);
 }
 
 void known_spindle_growth(const HiddenSettings& settings, HiddenScene& scene) {
-  move_tool(vector_of(settings), warmed_up(settings), scene);
+  move_tool(vector_of(settings), warmed_up(settings, kUsualHeating), scene);
 }
 
 void known_tool_expansion(const HiddenSettings& settings, HiddenScene& scene) {
@@ -102,9 +84,7 @@ StateNumber ahead_of_core(const HiddenSettings& settings) {
 }
 
 void known_temperature_rate(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.machine.add_state_error(settings.symbol(),
-                                [a = amplitude_of(settings), ahead = ahead_of_core(settings)](
-                                    const MachineState& state) { return a * ahead(state); });
+  add_motion(settings, ahead_of_core(settings), scene);
 }
 
 void known_tool_rate(const HiddenSettings& settings, HiddenScene& scene) {

@@ -16,21 +16,21 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::run_program;
 
-/// Straightness of X with the pitch of a 20 mm screw, 5 um.
-void write_screw(const std::string& folder) {
-  std::ofstream(folder + "/m/screw.toml")
+/// A model of straightness of X with the pitch of a 20 mm screw, 5 um; its path.
+std::string model_of_a_screw(const testing::ScratchFolder& scratch) {
+  const std::string folder = scratch.path().string() + "/m";
+  EXPECT_EQ(run_program("init \"w X' b Y Z t\" -o " + folder).exit_code, 0);
+  std::ofstream(folder + "/screw.toml")
       << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n[functions]\ndefault = { basis = \"zero\" "
          "}\n"
       << "[[effects]]\nkind = \"lead-error\"\nsymbol = \"EYX\"\nperiod_mm = 20\ncos_um = 5.0\nsin_um = 0.0\n";
+  return folder + "/screw.toml";
 }
 
 /// A grid of 50 mm takes its values at random phases and adds to it, one of 2 mm takes it away.
 TEST(CoarseTables, AreNotToBeLoaded) {
   const testing::ScratchFolder scratch;
-  const std::string folder = scratch.path().string();
-  ASSERT_EQ(run_program("init \"w X' b Y Z t\" -o " + folder + "/m").exit_code, 0);
-  write_screw(folder);
-  const std::string tables = "tables " + folder + "/m/screw.toml --dry-run --format ";
+  const std::string tables = "tables " + model_of_a_screw(scratch) + " --dry-run --format ";
   const auto coarse = run_program(tables + "linuxcnc-grid --step 47");
   EXPECT_THAT(coarse.output, HasSubstr(" with these tables and by 3.53 without: do not load them"));
   const nlohmann::json json =
@@ -46,10 +46,7 @@ TEST(CoarseTables, AreNotToBeLoaded) {
 /// Positions of a csv folder are its own where nothing is said, and follow a tolerance.
 TEST(CoarseTables, OfAFolderAskForATolerance) {
   const testing::ScratchFolder scratch;
-  const std::string folder = scratch.path().string();
-  ASSERT_EQ(run_program("init \"w X' b Y Z t\" -o " + folder + "/m").exit_code, 0);
-  write_screw(folder);
-  const std::string tables = "tables " + folder + "/m/screw.toml --dry-run --format csv";
+  const std::string tables = "tables " + model_of_a_screw(scratch) + " --dry-run --format csv";
   EXPECT_THAT(run_program(tables).output, HasSubstr("off the ideal compensation: --tolerance takes as many"));
   EXPECT_THAT(run_program(tables + " --tolerance 0.5").output, Not(HasSubstr("--tolerance takes")));
 }

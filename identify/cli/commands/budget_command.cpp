@@ -97,8 +97,7 @@ std::function<int()> define_budget(CLI::App& app) {
   app.add_option("--tool", arguments->tool, "tool whose functional point is meant; default: the first");
   app.add_option("--grid", arguments->grid,
                  "as many places as a grid of so many positions per linear axis has, 100 at least; they are "
-                 "spread evenly, "
-                 "without a period")
+                 "spread evenly, without a period")
       ->check(CLI::Range(2, 41))
       ->capture_default_str();
   add_conditions_options(app, arguments->conditions);

@@ -26,8 +26,7 @@ struct MadeTables {
   std::optional<AllAxesCheck> all_axes;     ///< of a machine with rotary axes
   std::vector<Finding> effects_left_out;    ///< what was identified and is in none of them, or partly
   /// What else there is to know before they are loaded: rotary axes that were not identified, levers of a
-  /// tilted head, steps of rotary axes that are too coarse, tables that leave more than there is without
-  /// them.
+  /// tilted head, positions that are too far apart, tables that leave more than there is without them.
   std::vector<Finding> cautions;
 };
 

@@ -225,15 +225,25 @@ VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& o
   return check;
 }
 
+namespace {
+
+double deviation_from(const Compensation& ideal, const TableFormat& format, const FitResult& result,
+                      const TableFormatOptions& options, const CompensationTables& tables) {
+  return largest_deviation(result.machine, ideal, linear_part(result, options, tables),
+                           format.limits.both_directions);
+}
+
+}  // namespace
+
 double deviation_of(const TableFormat& format, const FitResult& result, const TableFormatOptions& options,
                     const CompensationTables& tables) {
-  return largest_deviation(result.machine, sampled_compensation(format, result, options),
-                           linear_part(result, options, tables), format.limits.both_directions);
+  return deviation_from(sampled_compensation(format, result, options), format, result, options, tables);
 }
 
 StepChoice choose_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
                        double tolerance) {
   if (!format.limits.sampled) return {0.0, 0.0, true};
+  const Compensation ideal = sampled_compensation(format, result, options);
   double longest = 0.0;
   for (const AxisName axis : linear_axes_of(result.machine))
     longest = std::max(longest, 0.5 * result.machine.axis(axis).travel());
@@ -244,7 +254,7 @@ StepChoice choose_step(const TableFormat& format, const FitResult& result, Table
     try {
       const std::vector<TableFile> files = write_tables(format, result, options);
       if (bytes_of(files) > kMostTableBytes) break;
-      const double deviation = deviation_of(format, result, options, format.read(files));
+      const double deviation = deviation_from(ideal, format, result, options, format.read(files));
       if (deviation < best.deviation) best = {step, deviation, false};
       best.reached = best.deviation <= tolerance + 0.5 * format.limits.resolution;
     } catch (const InputError& error) {  // too many points, or values out of range where it is too coarse

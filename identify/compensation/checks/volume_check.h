@@ -12,8 +12,7 @@
 
 namespace volcal {
 
-/// To this power of the number of linear axes places errors are judged at, by all approaches from + and from
-/// -.
+/// Cells per linear axis: errors are judged at volume_points() of so many.
 inline constexpr int kVolumeCells = 9;
 
 /// Errors of the functional point, m, after their best rigid motion, which a frame's alignment takes up.

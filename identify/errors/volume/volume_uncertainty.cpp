@@ -21,7 +21,7 @@ double volume_uncertainty(const FitResult& result, const Tool& tool, const Condi
   VolumeMoments moments(result.layout.size);
   FadedInVolume faded;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Eigen::Vector3d place(positions[i][0], positions[i][1], positions[i][2]);
+    const Eigen::Vector3d place = place_of(result.machine, positions[i]);
     if (is_uncertain)
       moments.add(place, movable.asDiagonal() * field.unheld_rows(positions[i], directions[i]).topRows<3>());
     faded.add(place, field.faded_errors(positions[i], directions[i]), movable);

@@ -64,10 +64,6 @@ MonteCarloJson check_json(const PathCheck& check) {
           {"where", check.where}};
 }
 
-}  // namespace
-
-namespace {
-
 /// Of table values and the volume.
 MonteCarloJson stated_conditions_json(const MonteCarloResult& result) {
   MonteCarloJson json = MonteCarloJson::object();

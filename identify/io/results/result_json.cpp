@@ -345,10 +345,6 @@ FitResult result_from(const Json& json) {
   return result;
 }
 
-}  // namespace
-
-namespace {
-
 /// Files have a row per parameter, of stated errors too.
 Eigen::MatrixXd written_covariance(const FitResult& result) {
   if (result.covariance.size() > 0) return result.covariance;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "volcal/model/description/variable.h"
+#include "volcal/sim/measurement/instruments.h"
 
 namespace volcal::sim {
 namespace {
@@ -195,19 +196,34 @@ OccasionTest HiddenSettings::at_station(const std::string& station) const {
   return [station](const Occasion& occasion) { return station_of(occasion.plan) == station; };
 }
 
+OccasionTest HiddenSettings::at_setup(const std::string& setup) const {
+  if (std::ranges::find(context_.plans, setup, &SetupPlan::name) == context_.plans.end())
+    fail("there is no setup \"" + setup + "\"", "use a name that the campaign will have");
+  return [setup](const Occasion& occasion) { return occasion.plan.name == setup; };
+}
+
+ReadingTest HiddenSettings::of_column(const std::string& column, const std::string& setup) const {
+  constexpr std::size_t kMostChannels = 3;
+  const auto reads = [column, setup](const SetupPlan& plan, std::size_t channel) {
+    return (setup.empty() || plan.name == setup) && column_read(plan, channel) == column;
+  };
+  if (!setup.empty()) at_setup(setup);
+  const bool exists = std::ranges::any_of(context_.plans, [&](const SetupPlan& plan) {
+    bool found = false;
+    for (std::size_t channel = 0; channel < kMostChannels; ++channel) found |= reads(plan, channel);
+    return found;
+  });
+  if (!exists)
+    fail("\"" + column + "\" is no column that is read there",
+         "name an error motion, \"tool x\", \"station NAME x\" or a column of the readings");
+  return [reads](const Occasion& occasion, std::size_t channel) { return reads(occasion.plan, channel); };
+}
+
 OccasionTest HiddenSettings::where() const {
   const std::string setup = text("setup", "");
   const std::string station = text("station", "");
-  const auto exists = [&](const auto& name_of, const std::string& name) {
-    return std::ranges::any_of(context_.plans, [&](const SetupPlan& plan) { return name_of(plan) == name; });
-  };
-  const auto setup_name = [](const SetupPlan& plan) { return plan.name; };
-  if (!setup.empty() && !exists(setup_name, setup)) {
-    fail("there is no setup \"" + setup + "\"", "use a name that the campaign will have");
-  }
-  if (!station.empty() && !exists(station_of, station)) {
-    fail("no setup has the station \"" + station + "\"", "use a name that the campaign will have");
-  }
+  if (!setup.empty()) at_setup(setup);
+  if (!station.empty()) at_station(station);
   return [setup, station](const Occasion& occasion) {
     return (setup.empty() || occasion.plan.name == setup) &&
            (station.empty() || station_of(occasion.plan) == station);

@@ -12,6 +12,7 @@ namespace volcal::sim {
 
 using StateNumber = std::function<double(const MachineState& state)>;
 using OccasionTest = std::function<bool(const Occasion& occasion)>;
+using ReadingTest = std::function<bool(const Occasion& occasion, std::size_t channel)>;
 
 class HiddenSettings {
  public:
@@ -56,6 +57,9 @@ class HiddenSettings {
 
   /// Of that name.
   OccasionTest at_station(const std::string& station) const;
+  OccasionTest at_setup(const std::string& setup) const;
+  /// Of such a column, as "azimuth_deg"; of that setup unless it is empty.
+  ReadingTest of_column(const std::string& column, const std::string& setup) const;
   /// Occasions that the optional keys `setup`, `station` and `tool` leave.
   OccasionTest where() const;
 

@@ -109,6 +109,35 @@ void known_ring_eccentricity(const HiddenSettings& settings, HiddenScene& scene)
   add_wave(settings, kRingPeriod, scene);
 }
 
+/// How far an axis is behind, of an effect whose amplitude is a time or a displacement at full speed.
+StateNumber behind(const HiddenSettings& settings, AxisName axis, double share) {
+  return [a = share * amplitude_of(settings), k = index_of(axis),
+          timed = settings.has("by")](const MachineState& state) {
+    const double velocity = state.velocity[k];
+    if (velocity == 0.0) return 0.0;
+    return -a * (timed ? velocity : velocity / state.feed());
+  };
+}
+
+void known_following_error(const HiddenSettings& settings, HiddenScene& scene) {
+  const AxisName axis = settings.linear_axis("axis");
+  scene.machine.add_state_error(positioning_of(axis), behind(settings, axis, 1.0));
+}
+
+/// The first axis is late on circles that both make, by all of the time between the two; the amplitude of a
+/// displacement is half of what it is late.
+void known_servo_mismatch(const HiddenSettings& settings, HiddenScene& scene) {
+  const AxisName first = settings.linear_axis("axis"), second = settings.linear_axis("second_axis");
+  const double share = settings.has("by") ? 1.0 : 2.0;
+  scene.machine.add_state_error(positioning_of(first), [late = behind(settings, first, share),
+                                                        one = index_of(first),
+                                                        other = index_of(second)](const MachineState& state) {
+    constexpr double kOnTheirCircle = 1.0 - 1e-9;  // no third axis moves
+    const bool both = std::hypot(state.velocity[one], state.velocity[other]) >= kOnTheirCircle * state.feed();
+    return both ? late(state) : 0.0;
+  });
+}
+
 }  // namespace
 
 std::vector<KnownKind> known_drive_kinds() {
@@ -116,6 +145,7 @@ std::vector<KnownKind> known_drive_kinds() {
       {"common-reversal", known_common_reversal},
       {"curved-reversal", known_curved_reversal},
       {"encoder-subdivision", known_subdivision},
+      {"following-error", known_following_error},
       {"growing-lead-error", known_growing_lead_error},
       {"lead-error", known_lead_error},
       {"position-reversal", known_position_reversal},
@@ -123,6 +153,7 @@ std::vector<KnownKind> known_drive_kinds() {
       {"rack-error", known_rack_error},
       {"reversal", known_reversal},
       {"ring-eccentricity", known_ring_eccentricity},
+      {"servo-mismatch", known_servo_mismatch},
       {"thermal-reversal", known_thermal_reversal},
       {"worm-error", known_worm_error},
   };

@@ -39,6 +39,14 @@ StateNumber value_of(const HiddenSettings& settings, const Variable& variable) {
       return [unit](const MachineState& state) { return state.time / unit; };
     case Variable::Kind::Temperature:
       return settings.written_temperature(variable.written());
+    case Variable::Kind::TravelSinceTurning:
+      return [k = index_of(variable.axis), unit](const MachineState& state) {
+        return std::min(state.since_reversal[k], state.farthest[k]) / unit;
+      };
+    case Variable::Kind::Feed:
+      return [unit](const MachineState& state) { return state.feed() / unit; };
+    case Variable::Kind::Length:
+      return [unit](const MachineState& state) { return state.length / unit; };
     case Variable::Kind::ToolLength:
       return [machine, unit](const MachineState& state) {
         return machine.tools[state.tool].offset.norm() / unit;
@@ -66,8 +74,70 @@ std::vector<StateNumber> values_of(const HiddenSettings& settings, const std::st
   return values;
 }
 
-/// Adds what an effect is to its target: an error motion, "tool x", "tool NAME x" or "station NAME x".
-void add_to_target(const HiddenSettings& settings, const StateNumber& value, HiddenScene& scene) {
+/// Words of a text but the last one, and that one.
+std::pair<std::string, std::string> split_last(const std::string& text) {
+  const std::size_t space = text.rfind(' ');
+  return space == std::string::npos ? std::pair{std::string(), text}
+                                    : std::pair{text.substr(0, space), text.substr(space + 1)};
+}
+
+std::size_t tool_named(const HiddenSettings& settings, const std::string& name) {
+  const auto tool = settings.machine().tool_index(name);
+  if (!tool) settings.fail("there is no tool \"" + name + "\"", "use a tool of the machine file");
+  return *tool;
+}
+
+/// Where the key `only` has it: "tool NAME", "station NAME" or "setup NAME"; everywhere without it.
+StateNumber only_where_told(const HiddenSettings& settings, const StateNumber& value) {
+  const std::string only = settings.text("only", "");
+  if (only.empty()) return value;
+  const std::size_t space = only.find(' ');
+  const std::string what = only.substr(0, space);
+  const std::string name = space == std::string::npos ? "" : only.substr(space + 1);
+  if (what == "tool") {
+    return [value, tool = tool_named(settings, name)](const MachineState& state) {
+      return state.tool == tool ? value(state) : 0.0;
+    };
+  }
+  if (what == "station") {
+    settings.at_station(name);
+    return [value, name](const MachineState& state) { return state.station == name ? value(state) : 0.0; };
+  }
+  if (what != "setup")
+    settings.fail("only = \"" + only + "\" is no part of a campaign",
+                  "write \"tool NAME\", \"station NAME\" or \"setup NAME\"");
+  settings.at_setup(name);
+  return [value, name](const MachineState& state) { return state.setup == name ? value(state) : 0.0; };
+}
+
+void move_tool_along(const HiddenSettings& settings, const std::string& owner, const Eigen::Vector3d& along,
+                     const StateNumber& value, HiddenScene& scene) {
+  if (owner.empty()) return move_tool(along, value, scene);
+  move_tool(
+      along,
+      [value, tool = tool_named(settings, owner)](const MachineState& state) {
+        return state.tool == tool ? value(state) : 0.0;
+      },
+      scene);
+}
+
+/// Of a column of readings, "length_mm", or of that of one setup, "azimuth_deg of P1".
+void add_to_readings(const HiddenSettings& settings, const std::string& target, const StateNumber& value,
+                     HiddenScene& scene) {
+  const std::size_t of = target.find(" of ");
+  const std::string column = target.substr(0, of);
+  const std::string setup = of == std::string::npos ? "" : target.substr(of + 4);
+  scene.interference.reading.emplace_back(
+      [value, here = settings.of_column(column, setup)](const Occasion& occasion, std::size_t channel,
+                                                        double /*undisturbed*/) {
+        return here(occasion, channel) ? value(occasion.state) : 0.0;
+      });
+}
+
+/// Adds what an effect is to its target: an error motion, "tool x", "tool NAME x", "station NAME x" or a
+/// column of readings.
+void add_to_target(const HiddenSettings& settings, const StateNumber& everywhere, HiddenScene& scene) {
+  const StateNumber value = only_where_told(settings, everywhere);
   const std::string target = settings.text("target", "");
   if (const auto symbol = ErrorSymbol::parse(target)) {
     if (!settings.machine().has_axis(symbol->axis))
@@ -75,33 +145,18 @@ void add_to_target(const HiddenSettings& settings, const StateNumber& value, Hid
     scene.machine.add_state_error(*symbol, value);
     return;
   }
-  std::istringstream words(target);
-  std::string what, owner, direction;
-  words >> what;
-  for (std::string word; words >> word;) {
-    if (!direction.empty()) owner += (owner.empty() ? "" : " ") + direction;
-    direction = word;
-  }
+  const auto [whose, direction] = split_last(target);
+  const std::string what = whose.substr(0, whose.find(' '));
   if ((what != "tool" && what != "station") || direction.size() != 1 || direction[0] < 'x' ||
       direction[0] > 'z')
-    settings.fail("its target is \"" + target + "\", which is not simulated", kWithoutIt);
+    return add_to_readings(settings, target, value, scene);
   const Eigen::Vector3d along = Eigen::Vector3d::Unit(direction[0] - 'x');
-  if (what == "tool") {
-    std::optional<std::size_t> tool;
-    if (!owner.empty()) {
-      tool = settings.machine().tool_index(owner);
-      if (!tool) settings.fail("there is no tool \"" + owner + "\"", "use a tool of the machine file");
-    }
-    const auto of_tool = [value, tool](const MachineState& state) {
-      return !tool || state.tool == *tool ? value(state) : 0.0;
-    };
-    move_tool(along, of_tool, scene);
-  } else {
-    scene.interference.instrument.emplace_back(
-        [along, value, here = settings.at_station(owner)](const Occasion& occasion, InstrumentTruth& truth) {
-          if (here(occasion)) truth.station += along * value(occasion.state);
-        });
-  }
+  const std::string owner = whose.size() > what.size() ? whose.substr(what.size() + 1) : "";
+  if (what == "tool") return move_tool_along(settings, owner, along, value, scene);
+  scene.interference.instrument.emplace_back(
+      [along, value, here = settings.at_station(owner)](const Occasion& occasion, InstrumentTruth& truth) {
+        if (here(occasion)) truth.station += along * value(occasion.state);
+      });
 }
 
 /// A formula of muParser. Copies share its numbers, one after another.
@@ -232,9 +287,6 @@ class KnownSurface {
 };
 
 void known_empirical(const HiddenSettings& settings, HiddenScene& scene) {
-  if (settings.has("only"))
-    settings.fail("it acts on \"" + settings.text("only", "") + "\" only, which is not simulated",
-                  kWithoutIt);
   add_to_target(settings, KnownSurface(settings), scene);
 }
 

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "volcal/sim/known/known_kinds.h"
+#include "volcal/sim/machine/transforms.h"
 
 namespace volcal::sim {
 namespace {
@@ -17,6 +18,19 @@ void known_axis_coupling(const HiddenSettings& settings, HiddenScene& scene) {
         return std::pow(q(state), power);
       },
       scene);
+}
+
+/// Machine and workpiece turn about the middle of the travel, against the floor.
+void known_foundation_tilt(const HiddenSettings& settings, HiddenScene& scene) {
+  const std::string about = settings.text("about", "");
+  const int direction = about == "x" ? 0 : about == "y" ? 1 : 2;
+  const double power = settings.text("shape", "linear") == "quadratic" ? 2.0 : 1.0;
+  scene.interference.instrument.emplace_back(
+      [a = amplitude_of(settings), q = from_home(settings, settings.axis("axis")), power, direction,
+       pivot = settings.middle_of_travel()](const Occasion& occasion, InstrumentTruth& truth) {
+        truth.floor = truth.floor * translation(pivot) *
+                      rotation_about(direction, a * std::pow(q(occasion.state), power)) * translation(-pivot);
+      });
 }
 
 void known_product_coupling(const HiddenSettings& settings, HiddenScene& scene) {
@@ -71,6 +85,7 @@ std::vector<KnownKind> known_structure_kinds() {
   return {
       {"axis-coupling", known_axis_coupling},
       {"cradle-coupling", known_cradle_coupling},
+      {"foundation-tilt", known_foundation_tilt},
       {"product-coupling", known_product_coupling},
       {"tilt-load", known_tilt_load},
       {"tool-load", known_tool_load},

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -28,6 +29,14 @@ std::vector<LocationSymbol> linear_locations(const Machine& machine, AxisName ax
     if (symbol.axis == axis) angles.push_back(symbol);
   }
   return angles;
+}
+
+double MachineState::feed() const {
+  const auto along = [this](AxisName main, AxisName parallel) {
+    return velocity[index_of(main)] + velocity[index_of(parallel)];
+  };
+  return std::hypot(along(AxisName::X, AxisName::U), along(AxisName::Y, AxisName::V),
+                    along(AxisName::Z, AxisName::W));
 }
 
 TruthMachine::TruthMachine(Machine machine) : machine_(std::move(machine)) {

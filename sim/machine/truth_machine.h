@@ -37,6 +37,12 @@ struct MachineState {
   std::array<double, kAxisCount> velocity{};        ///< while the reading is taken, m/s or rad/s
   std::array<double, kAxisCount> since_reversal{};  ///< travelled since the axis last turned round, m or rad
   bool settled = false;                             ///< has been at 20 degC for ever: nothing lags behind
+  std::array<double, kAxisCount> farthest{};        ///< largest since_reversal of the setup that is finite
+  double length = 0.0;                              ///< nominal, that the instrument measures, m
+  std::string setup = {};                           ///< that reads
+  std::string station = {};                         ///< at which it stands; may be empty
+
+  double feed() const;  ///< along the path of the linear axes, m/s
 };
 
 using ErrorFunction = std::function<double(double position)>;         ///< m or rad

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 
 #include "volcal/sim/machine/random.h"
 #include "volcal/sim/machine/transforms.h"
@@ -177,22 +178,26 @@ using ReadFunction = Reading (*)(const Sighting&);
 struct SimulatedInstrument {
   std::string_view name;
   ReadFunction read;
+  std::vector<std::vector<std::string_view>> columns;  ///< in files, by column set
 };
 
-constexpr std::array<SimulatedInstrument, 9> kInstruments = {{
-    {"laser-tracer", read_tracer},
-    {"laser-tracker", read_tracker},
-    {"ball-bar", read_ball_bar},
-    {"displacement", read_displacement},
-    {"straightness", read_straightness},
-    {"angle", read_angle},
-    {"volumetric-points", read_volumetric_points},
-    {kRTest, read_r_test},
-    {kProbedSphere, read_probed_sphere},
-}};
+const std::vector<SimulatedInstrument>& simulated_instruments() {
+  static const std::vector<SimulatedInstrument> kInstruments = {
+      {"laser-tracer", read_tracer, {{"length_mm"}}},
+      {"laser-tracker", read_tracker, {{"length_mm", "azimuth_deg", "elevation_deg"}}},
+      {"ball-bar", read_ball_bar, {{"length_mm"}}},
+      {"displacement", read_displacement, {{"displacement_mm"}, {"deviation_um"}}},
+      {"straightness", read_straightness, {{"deviation_um"}}},
+      {"angle", read_angle, {{"angle_urad"}}},
+      {"volumetric-points", read_volumetric_points, {{"ex_um", "ey_um", "ez_um"}}},
+      {kRTest, read_r_test, {{"dx_um", "dy_um", "dz_um"}}},
+      {kProbedSphere, read_probed_sphere, {{"cx_mm", "cy_mm", "cz_mm"}, {"reach_mm"}}},
+  };
+  return kInstruments;
+}
 
 ReadFunction find_instrument(const std::string& name) {
-  for (const SimulatedInstrument& instrument : kInstruments) {
+  for (const SimulatedInstrument& instrument : simulated_instruments()) {
     if (instrument.name == name) return instrument.read;
   }
   throw std::invalid_argument("instrument " + name + " is not simulated");
@@ -224,18 +229,39 @@ class Turns {
   std::array<double, kAxisCount> travelled_{};
 };
 
-MachineState state_at(const CommandedPoint& point, std::size_t tool, const MeasuringConditions& conditions,
-                      double time) {
+/// How far each axis goes at most after it has turned round.
+std::array<double, kAxisCount> farthest_since_turning(const SetupPlan& plan) {
+  std::array<double, kAxisCount> farthest{};
+  Turns turns;
+  for (const CommandedPoint& point : plan.points) {
+    const auto& travelled = turns.advance(point);
+    for (std::size_t k = 0; k < kAxisCount; ++k) {
+      if (std::isfinite(travelled[k])) farthest[k] = std::max(farthest[k], travelled[k]);
+    }
+  }
+  return farthest;
+}
+
+bool is_at_station(const SetupPlan& plan) {
+  return plan.instrument == "laser-tracer" || plan.instrument == "laser-tracker";
+}
+
+MachineState state_at(const CommandedPoint& point, const SetupPlan& plan,
+                      const MeasuringConditions& conditions, double time) {
   const bool settled = conditions.at_reference_temperature;
   return {
       point.position,
       point.direction,
       time,
       settled ? conditions.environment.reference_temperatures() : conditions.environment.temperatures(time),
-      tool,
+      plan.tool,
       point.velocity,
       {},
-      settled};
+      settled,
+      {},
+      0.0,
+      plan.name,
+      plan.options.text("station").value_or("")};
 }
 
 SetupGeometry geometry_of(const SetupPlan& plan, const MeasuringConditions& conditions) {
@@ -259,15 +285,6 @@ SetupGeometry geometry_of(const SetupPlan& plan, const MeasuringConditions& cond
   return geometry;
 }
 
-double feed_of(const CommandedPoint& point) {
-  const auto& v = point.velocity;
-  const auto along = [&](AxisName main, AxisName parallel) {
-    return v[index_of(main)] + v[index_of(parallel)];
-  };
-  return std::hypot(along(AxisName::X, AxisName::U), along(AxisName::Y, AxisName::V),
-                    along(AxisName::Z, AxisName::W));
-}
-
 /// Columns that describe how a point was reached.
 void append_point(const CommandedPoint& point, const MachineState& state, const Machine& machine,
                   bool records_feed, Readings& readings) {
@@ -280,7 +297,7 @@ void append_point(const CommandedPoint& point, const MachineState& state, const 
   readings.time.push_back(state.time);
   readings.line.push_back(point.line);
   readings.run.push_back(point.run);
-  if (records_feed) readings.feed.push_back(feed_of(point));
+  if (records_feed) readings.feed.push_back(state.feed());
   for (const auto& [channel, value] : state.temperature) readings.temperature[channel].push_back(value);
   readings.source_line.push_back(static_cast<std::int64_t>(readings.source_line.size()) + 2);
 }
@@ -297,17 +314,32 @@ Options noise_options(const SetupPlan& plan) {
 /// Takes the readings of one setup, one after another.
 class Measurer {
  public:
-  Measurer(const SetupPlan& plan, const MeasuringConditions& conditions)
+  Measurer(const SetupPlan& plan, const MeasuringConditions& conditions, double first_time)
       : plan_(plan),
         conditions_(conditions),
+        first_time_(first_time),
         read_(find_instrument(plan.instrument)),
         geometry_(geometry_of(plan, conditions)) {}
+
+  /// Nominal, to the station or the centre of a bar, or along a line.
+  double length(const MachineState& state) const {
+    const TruthMachine& truth = conditions_.machine;
+    const Eigen::Vector3d nominal_w = truth.nominal_point(state, truth.machine().tools.at(plan_.tool).offset);
+    if (is_at_station(plan_)) return (nominal_w - plan_.truth.station).norm();
+    if (plan_.instrument == "ball-bar") return (nominal_w - plan_.truth.centre).norm();
+    if (plan_.instrument == "volumetric-points") return (nominal_w - geometry_.centroid_w).norm();
+    if (plan_.instrument == "straightness")
+      return std::abs(geometry_.line_w.dot(nominal_w - geometry_.first_w));
+    if (plan_.instrument != "displacement") return 0.0;
+    const Eigen::Vector3d beam = plan_.options.vector("direction").value_or(geometry_.line_w).normalized();
+    return std::abs(beam.dot(nominal_w - geometry_.first_w));
+  }
 
   /// Without the instrument's noise; `repeatability` is the machine's.
   Reading read(const CommandedPoint& point, const MachineState& state,
                const Eigen::Vector3d& repeatability) const {
     const TruthMachine& truth = conditions_.machine;
-    const Occasion occasion{plan_, state};
+    const Occasion occasion{plan_, point, state, first_time_};
     Eigen::Vector3d tool = conditions_.tool_offsets.at(plan_.tool);
     InstrumentTruth instrument = plan_.truth;
     if (conditions_.interference) {
@@ -331,6 +363,7 @@ class Measurer {
  private:
   const SetupPlan& plan_;
   const MeasuringConditions& conditions_;
+  double first_time_;
   ReadFunction read_;
   SetupGeometry geometry_;
 };
@@ -386,18 +419,30 @@ void give_contacts(Readings& readings) {
 
 }  // namespace
 
+std::string column_read(const SetupPlan& plan, std::size_t channel) {
+  for (const SimulatedInstrument& instrument : simulated_instruments()) {
+    if (instrument.name != plan.instrument || plan.column_set >= instrument.columns.size()) continue;
+    const auto& columns = instrument.columns[plan.column_set];
+    if (channel < columns.size()) return std::string(columns[channel]);
+  }
+  return {};
+}
+
 Setup measure(const SetupPlan& plan, const MeasuringConditions& conditions, double start_time) {
   if (plan.points.empty()) throw std::invalid_argument("setup " + plan.name + " has no points");
-  const Measurer measurer(plan, conditions);
+  const Measurer measurer(plan, conditions, start_time);
   const CorrelatedNoise correlated(plan, conditions.seed);
   RandomStream random(conditions.seed, "noise of " + plan.name);
   Turns turns;
+  const std::array<double, kAxisCount> farthest = farthest_since_turning(plan);
   Setup setup = described(plan);
   double time = start_time;
   for (std::size_t row = 0; row < plan.points.size(); ++row) {
     const CommandedPoint& point = plan.points[row];
-    MachineState state = state_at(point, plan.tool, conditions, time);
+    MachineState state = state_at(point, plan, conditions, time);
     state.since_reversal = turns.advance(point);
+    state.farthest = farthest;
+    state.length = measurer.length(state);
     Eigen::Vector3d repeatability = Eigen::Vector3d::Zero();
     if (!conditions.noise_free) repeatability = plan.noise.repeatability * random.normal_vector();
     Reading reading = measurer.read(point, state, repeatability);

@@ -44,6 +44,9 @@ struct MeasuringConditions {
   const Interference* interference = nullptr;  ///< nothing interferes
 };
 
+/// Name in files of what a channel of a setup reads, as "azimuth_deg"; empty where it has no such channel.
+std::string column_read(const SetupPlan& plan, std::size_t channel);
+
 /// `start_time`: of the first reading, s. Throws std::invalid_argument for an instrument that is not
 /// simulated and for a setup without points.
 Setup measure(const SetupPlan& plan, const MeasuringConditions& conditions, double start_time);

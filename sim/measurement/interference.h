@@ -14,7 +14,9 @@ namespace volcal::sim {
 /// One reading about to be taken.
 struct Occasion {
   const SetupPlan& plan;
+  const CommandedPoint& point;
   const MachineState& state;
+  double first_time = 0.0;  ///< of the setup's first reading, s
 };
 
 struct Interference {

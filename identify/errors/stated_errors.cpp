@@ -1,6 +1,7 @@
 #include "volcal/identify/errors/stated_errors.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
@@ -120,22 +121,29 @@ bool states_errors(const ModelSpec& model) {
                              [](const auto& entry) { return !entry.second.coefficients.empty(); });
 }
 
+std::vector<EffectSpec> effects_without_amplitude(const ModelSpec& model) {
+  std::vector<EffectSpec> without;
+  std::ranges::copy_if(model.effects, std::back_inserter(without), [&](const EffectSpec& spec) {
+    const std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, model.file);
+    return std::ranges::none_of(effect->amplitudes(), [&](const EffectAmplitude& amplitude) {
+      return spec.options.has(std::string(stem_of_key(amplitude.key)));
+    });
+  });
+  return without;
+}
+
 void require_stated_errors(const ModelSpec& model) {
   if (!states_errors(model))
     throw InputError(
         {model.file, 0}, "the model states no error: no coefficients, no locations, no effects",
         "give a model with values, such as the identified.toml of a result; of a machine that is "
         "not built yet, volcal budget MACHINE.toml --tolerances FILE");
-  for (const EffectSpec& spec : model.effects) {
+  for (const EffectSpec& spec : effects_without_amplitude(model)) {
     const std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, model.file);
-    const auto is_stated = [&](const EffectAmplitude& amplitude) {
-      return spec.options.has(std::string(stem_of_key(amplitude.key)));
-    };
-    if (std::ranges::none_of(effect->amplitudes(), is_stated))
-      throw InputError({model.file, spec.source_line},
-                       "effect \"" + spec.kind + "\": it states no amplitude and would count as nothing",
-                       "add " + effect->amplitudes().front().key +
-                           " = ..., or give the identified.toml of a result, which has what was fitted");
+    throw InputError({model.file, spec.source_line},
+                     "effect \"" + spec.kind + "\": it states no amplitude and would count as nothing",
+                     "add " + effect->amplitudes().front().key +
+                         " = ..., or give the identified.toml of a result, which has what was fitted");
   }
 }
 

@@ -15,6 +15,9 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model);
 /// Whether a model states an error: a function with coefficients, a known location, an effect.
 bool states_errors(const ModelSpec& model);
 
+/// Those that count as nothing where no fit follows.
+std::vector<EffectSpec> effects_without_amplitude(const ModelSpec& model);
+
 /// Throws InputError where it states none, and for an effect without an amplitude, which would count as
 /// nothing.
 void require_stated_errors(const ModelSpec& model);

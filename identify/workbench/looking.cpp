@@ -221,9 +221,8 @@ bool changes_while_it_runs(const std::string& depends_on) {
 /// holds.
 Json left_json(const Session& session) {
   const FitResult& result = session.fitted_result();
-  constexpr int kCellsPerAxis = 5;
   const ErrorBudget budget = error_budget(result, result.machine.tools.front(), default_conditions(result),
-                                          kCellsPerAxis, RotaryPoses::AtRest);
+                                          kBudgetCells, RotaryPoses::AtRest);
   double squares = 0.0;
   Json held_by_none = Json::array();
   for (const BudgetLine& line : budget.contributions) {

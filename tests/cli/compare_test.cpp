@@ -46,6 +46,16 @@ TEST(Compare, AModelWithoutCoefficientsIsTheNominalMachineAndSaysSo) {
   EXPECT_THAT(outcome.output, HasSubstr("model.toml holds no coefficients"));
 }
 
+TEST(Compare, NamesEffectsThatCountAsNothing) {
+  const ::volcal::testing::ScratchFolder folder;
+  const std::string model = (folder.path() / "model.toml").string();
+  std::ofstream(model) << "format = \"volcal-model-1\"\n[functions]\ndefault = { basis = \"zero\" }\n"
+                          "[[effects]]\nkind = \"custom\"\ntarget = \"EXX\"\nexpression = \"dir_x\"\n";
+  const testing::ProgramRun outcome = compare(kExample + "campaign.toml " + model);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, StartsWith(model + " (of no amplitude, counted as nothing: EXX by dir_x)"));
+}
+
 TEST(Compare, JsonIsOneDocumentAndNothingElse) {
   const testing::ProgramRun outcome = compare(kExample + "campaign.toml nominal nominal --json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;

@@ -28,7 +28,7 @@ struct BudgetArguments {
   std::string tolerances;
   std::string tool;
   ConditionsArguments conditions;
-  int grid = 7;
+  int grid = kBudgetCells;
   bool verbose = false;
   bool json = false;
 };

@@ -29,6 +29,7 @@
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/text_file.h"
+#include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
 namespace {
@@ -71,6 +72,13 @@ NamedModel load_tables(const std::string& argument, const Campaign& campaign) {
   return model;
 }
 
+std::string counts_as_nothing(const ModelSpec& model, const std::vector<EffectSpec>& effects) {
+  std::string labels;
+  for (const EffectSpec& spec : effects)
+    labels += (labels.empty() ? "" : ", ") + effect_label(*find_effect(spec.kind)->make(spec, model.file));
+  return "of no amplitude, counted as nothing: " + labels;
+}
+
 /// A result, a model file, a folder of error tables, or the word "nominal".
 NamedModel load(const std::string& argument, const Campaign& campaign) {
   if (argument == kNominal) return {"nominal machine", nominal_model(), nominal_model(), false};
@@ -101,6 +109,8 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
   NamedModel model{argument, read_model(argument, campaign.machine), {}, true};
   model.refittable = model.spec;
   if (!states_errors(model.spec)) model.name = "nominal machine (" + argument + " holds no coefficients)";
+  const std::vector<EffectSpec> without = effects_without_amplitude(model.spec);
+  if (!without.empty()) model.name += fmt::format(" ({})", counts_as_nothing(model.spec, without));
   return model;
 }
 

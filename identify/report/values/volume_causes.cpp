@@ -11,7 +11,6 @@
 namespace volcal {
 namespace {
 
-constexpr int kCellsPerAxis = 5;
 constexpr double kDoesNotMove = 1e-12;  // m
 
 /// Parameters of functions and blocks that both layouts have, theirs and ours.
@@ -86,7 +85,7 @@ VolumeCauses volume_causes(const FitResult& given, std::span<const EffectFinding
   const FitResult extended = extended_result(given, added);
   const Tool& tool = extended.machine.tools.front();
   const ErrorBudget budget =
-      error_budget(extended, tool, default_conditions(extended), kCellsPerAxis, RotaryPoses::AtRest);
+      error_budget(extended, tool, default_conditions(extended), kBudgetCells, RotaryPoses::AtRest);
   result.tool = tool.name;
   result.total_rms = budget.total.rms;
   for (const BudgetLine& line : budget.contributions) {

@@ -1,21 +1,15 @@
 #include "volcal/identify/report/values/volume_error.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/identify/errors/volume/remaining_error.h"
 #include "volcal/identify/errors/volume/volumetric.h"
 
 namespace volcal::report {
 namespace {
-
-double rms_norm(const std::vector<Eigen::Vector3d>& vectors) {
-  double sum = 0.0;
-  for (const auto& vector : vectors) sum += vector.squaredNorm();
-  return vectors.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(vectors.size()));
-}
 
 double max_norm(const std::vector<Eigen::Vector3d>& vectors) {
   double largest = 0.0;
@@ -35,9 +29,6 @@ bool is_corner(const Machine& machine, const AxisPosition& position) {
 
 }  // namespace
 
-double ToolVolume::error_rms() const { return rms_norm(error_w); }
-double ToolVolume::error_max() const { return max_norm(error_w); }
-double ToolVolume::u_rms() const { return rms_norm(u_w); }
 double ToolVolume::u_max() const { return max_norm(u_w); }
 
 std::vector<ToolVolume> tool_volumes(const FitResult& result, int per_axis) {
@@ -64,6 +55,11 @@ std::vector<ToolVolume> tool_volumes(const FitResult& result, int per_axis) {
     RemainingError remaining = remaining_errors.at(volume.point_w, rows);
     volume.u_w = std::move(remaining.u);
     volume.example_w = std::move(remaining.example);
+    const BudgetLine whole =
+        error_budget(result, tool, default_conditions(result), kBudgetCells, RotaryPoses::AtRest).total;
+    volume.error_rms = whole.rms;
+    volume.error_max = whole.max;
+    volume.u_rms = whole.u_rms;
   }
   return volumes;
 }

@@ -1,6 +1,7 @@
 #pragma once
-/// Volumetric error on a grid over the travel, as the report shows it: without its best rigid motion, which
-/// is a matter of how a frame was aligned (as `volcal validate` estimates the frame of its points).
+/// Volumetric error as the report shows it: without its best rigid motion, which is a matter of how a frame
+/// was aligned (as `volcal validate` estimates the frame of its points). Vectors are drawn on a grid over the
+/// travel; sizes are those of the error budget, whose places have no period.
 
 #include <Eigen/Core>
 #include <string>
@@ -22,13 +23,14 @@ struct ToolVolume {
   std::vector<Eigen::Vector3d>
       corner_w;  ///< of the travel: bits of the index = lower or upper ends of the axes
 
-  double error_rms() const;  ///< root mean |e|^2
-  double error_max() const;  ///< largest |e|
-  double u_rms() const;      ///< root mean |u|^2
-  double u_max() const;
+  double error_rms = 0.0;  ///< root mean |e|^2 over the volume, from both directions of approach
+  double error_max = 0.0;  ///< largest |e| there and at the ends of travel
+  double u_rms = 0.0;      ///< root mean |u|^2 over the volume
+
+  double u_max() const;  ///< largest |u| of what is drawn
 };
 
-/// `per_axis` positions on each linear axis.
+/// Drawn at `per_axis` positions on each linear axis.
 std::vector<ToolVolume> tool_volumes(const FitResult& result, int per_axis);
 
 }  // namespace volcal::report

@@ -7,17 +7,22 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <set>
 #include <sstream>
 
 #include "tests/io/report/drawing.h"
 #include "tests/io/report/synthetic_fit.h"
+#include "volcal/identify/errors/error_field.h"
+#include "volcal/identify/errors/volume/volumetric.h"
 #include "volcal/identify/report/page.h"
 #include "volcal/identify/report/text/fit_summary.h"
 #include "volcal/identify/report/values/correlation.h"
 #include "volcal/identify/report/values/residual_sample.h"
 #include "volcal/identify/solve/adjustment.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/functions/registry.h"
+#include "volcal/model/kinematics/chain.h"
 
 namespace volcal {
 namespace {
@@ -150,6 +155,37 @@ TEST_F(ReportTest, EveryWorkVolumeHasVectorsAndUncertaintyPerTool) {
   }
   EXPECT_EQ(data.at("named_points").size(), 3u);  // two stations, one ball-bar centre
   EXPECT_EQ(data.at("setups").size(), fit_->campaign.setups.size());
+}
+
+/// Held against places and directions drawn at random. A grid, whose faces weigh more, would be off by a
+/// fifth.
+TEST_F(ReportTest, TheSizeOfTheErrorIsThatOverTheVolume) {
+  const FitResult& result = fit_->result;
+  const KinematicChain chain(result.machine);
+  std::mt19937_64 random(5);
+  constexpr int kPlaces = 4000;
+  const Json data = page_data(*document_, "volume");
+  for (std::size_t t = 0; t < result.machine.tools.size(); ++t) {
+    const Tool& tool = result.machine.tools[t];
+    const ErrorField field(result, tool);
+    std::vector<Eigen::Vector3d> points, errors;
+    for (int i = 0; i < kPlaces; ++i) {
+      AxisPosition position{};
+      ApproachDirection direction{};
+      for (const Axis& axis : result.machine.axes) {
+        std::uniform_real_distribution<double> place(axis.travel_min, axis.travel_max);
+        position[index_of(axis.name)] = place(random);
+        direction[index_of(axis.name)] = random() % 2 == 0 ? 1 : -1;
+      }
+      points.push_back(chain.nominal_point_w(position, tool.offset));
+      errors.emplace_back(field.at(position, direction).head<3>());
+    }
+    const VolumetricFigures figures = volumetric_figures(without_rigid_motion(points, errors));
+    const double shown = data.at("tools").at(t).at("error_rms_um").get<double>();
+    EXPECT_NEAR(shown, figures.rms / kMicro, 0.05 * figures.rms / kMicro) << tool.name;
+    EXPECT_GT(data.at("tools").at(t).at("error_max_um").get<double>(), 0.95 * figures.max / kMicro)
+        << tool.name;
+  }
 }
 
 TEST_F(ReportTest, SuspectReadingsAreListedWorstFirst) {

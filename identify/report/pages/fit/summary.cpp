@@ -78,9 +78,9 @@ Json figures(const PageInput& input) {
   };
   if (!input.volume.empty()) {
     const auto worst = std::ranges::max_element(input.volume, {}, &ToolVolume::error_rms);
-    add("Volumetric error now", fmt::format("{:.1f}", worst->error_rms() * kPerMicro), "µm RMS",
-        fmt::format("max {:.1f} µm, tool {}", worst->error_max() * kPerMicro, worst->tool));
-    add("Its uncertainty", fmt::format("{:.2f}", worst->u_rms() * kPerMicro), "µm RMS, k = 1",
+    add("Volumetric error now", fmt::format("{:.1f}", worst->error_rms * kPerMicro), "µm RMS",
+        fmt::format("max {:.1f} µm, tool {}", worst->error_max * kPerMicro, worst->tool));
+    add("Its uncertainty", fmt::format("{:.2f}", worst->u_rms * kPerMicro), "µm RMS, k = 1",
         fmt::format("max {:.2f} µm, tool {}", worst->u_max() * kPerMicro, worst->tool));
   }
   add("Scatter / stated noise σ₀", fmt::format("{:.3f}", result.sigma0), "", "1 = as stated");

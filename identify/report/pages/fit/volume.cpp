@@ -52,9 +52,9 @@ Json tool_json(const ToolVolume& volume) {
           {"extrapolated", std::move(extrapolated)},
           {"corner_mm", points_json(volume.corner_w, kPerMilli, 7)},
           {"components", component_ranges(volume)},
-          {"error_rms_um", rounded(volume.error_rms() * kPerMicro, 4)},
-          {"error_max_um", rounded(volume.error_max() * kPerMicro, 4)},
-          {"u_rms_um", rounded(volume.u_rms() * kPerMicro, 3)},
+          {"error_rms_um", rounded(volume.error_rms * kPerMicro, 4)},
+          {"error_max_um", rounded(volume.error_max * kPerMicro, 4)},
+          {"u_rms_um", rounded(volume.u_rms * kPerMicro, 3)},
           {"u_max_um", rounded(volume.u_max() * kPerMicro, 3)}};
 }
 

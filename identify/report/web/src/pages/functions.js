@@ -107,9 +107,9 @@ export function renderFunctions(body, data) {
   body.append(note(`Value and ${fixed(data.coverage, 2)} u band (95 %) along each axis. Dashed on grey ground: extrapolated beyond the measured positions. Ticks on the position axis: ends of the pieces of the function.`), controls);
   for (const [kind, axes] of rowsOf(data.axes)) {
     const grid = el('div', { class: `functions ${kind}`, style: `--columns:${axes.length}` });
-    for (const axis of axes) grid.append(el('h3', { class: `axis-${axis.name}` }, `${axis.name} axis`));
-    for (let component = 0; component < 6; ++component) {
-      for (const axis of axes) {
+    for (const axis of axes) {
+      grid.append(el('h3', { class: `axis-${axis.name}` }, `${axis.name} axis`));
+      for (let component = 0; component < 6; ++component) {
         const f = data.functions.find((g) => g.axis === axis.name && g.component === component);
         grid.append(panel(f, axis, view, data.functions, redraws));
       }

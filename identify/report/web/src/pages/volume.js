@@ -131,7 +131,7 @@ const componentTable = (tool) => table([
   { name: 'Max', unit: 'µm', cell: (row) => fixed(row.max, 1) },
   { name: 'Range', unit: 'µm', cell: (row) => fixed(row.range, 1) },
   { name: 'u (RMS)', unit: 'µm', cell: (row) => fixed(row.u_rms, 2) },
-], tool.components, { caption: `Errors in the work volume, tool ${tool.name}` });
+], tool.components, { caption: `Errors at the places drawn, tool ${tool.name}` });
 
 function slider(view, redraw) {
   const output = el('output', {});
@@ -187,7 +187,7 @@ export function renderVolume(body, data) {
     controls,
     el('div', { class: 'scenes' }, nodes.map((node, k) => el('figure', {}, [captions[k], node]))),
     el('div', { class: 'volume-foot' }, [tables, el('div', {}, [
-    note('Left: identified error of the functional point, each line from the nominal point to the magnified actual one (dot). Right, at the same magnification and with the same shades: one of the error fields that the readings leave possible once the identified errors are corrected, drawn from their joint uncertainty; its direction is not known, its size is that of the uncertainty. It does not cover repeatability, temperature or effects that the model lacks. The best rigid motion is removed from both, as volcal validate does; volumetric_grid.csv has the errors relative to home.'),
+    note('Left: identified error of the functional point, each line from the nominal point to the magnified actual one (dot). Right, at the same magnification and with the same shades: one of the error fields that the readings leave possible once the identified errors are corrected, drawn from their joint uncertainty; its direction is not known, its size is that of the uncertainty. It does not cover repeatability, temperature or effects that the model lacks. RMS and the largest error are those of volcal budget: at places all over the volume, from both directions of approach. The best rigid motion is removed from both, as volcal validate does; volumetric_grid.csv has the errors relative to home.'),
     note(`Workpiece coordinates.${data.has_rotary ? ' Rotary axes at 0.' : ''}${data.at_home ? ` ${data.at_home} at home.` : ''} Point at a line to read its setup, click a name in the legend to show or hide what the instrument measured; drag to turn both pictures; the buttons above a picture move and zoom it.`),
     ])]),
   );

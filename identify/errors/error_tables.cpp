@@ -302,9 +302,14 @@ PoseErrorVector variance_of(const PoseErrorRows& rows, const Eigen::MatrixXd& co
   return (rows * covariance).cwiseProduct(rows).rowwise().sum();
 }
 
+/// Of a value that depends on few of the parameters.
 double variance_of(const Eigen::VectorXd& derivatives, const Eigen::MatrixXd& covariance) {
   if (covariance.size() == 0) return 0.0;
-  return std::max(0.0, derivatives.dot(covariance * derivatives));
+  std::vector<Eigen::Index> used;
+  for (Eigen::Index i = 0; i < derivatives.size(); ++i) {
+    if (derivatives[i] != 0.0) used.push_back(i);
+  }
+  return std::max(0.0, derivatives(used).dot(covariance(used, used) * derivatives(used)));
 }
 
 PoseErrorVector variance_beyond_readings(const FitResult& result, const ErrorField& field,

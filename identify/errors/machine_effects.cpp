@@ -186,16 +186,12 @@ class ReachProbe {
     std::rotate(shifted_.begin(), shifted_.begin() + 1, shifted_.end());
   }
 
-  EffectReach reach_of(const Effect& effect) {
+  /// `named`: conditions that the effect is written of.
+  EffectReach reach_of(const Effect& effect, const std::set<Variable>& named) {
     if (effect.surface() != nullptr) return reach_of_surface(effect);
     EffectReach reach;
     const Eigen::MatrixXd here = at(effect, conditions_, positions_, directions_);
-    reach.acts = !here.isZero(0.0);
-    for (const Axis& axis : machine_.axes) {
-      const std::size_t a = index_of(axis.name);
-      reach.position[a] = differ(here, at(effect, conditions_, moved(a), directions_));
-      reach.direction[a] = differ(here, at(effect, conditions_, positions_, turned(a)));
-    }
+    add_dependence(effect, conditions_, here, reach);
     for (const auto& [channel, value] : conditions_.temperature_degC) {
       Conditions warmer = conditions_;
       warmer.temperature_degC[channel] += 1.7;
@@ -211,6 +207,7 @@ class ReachProbe {
       faster.feed = 1.3 * *conditions_.feed + 0.01;
       reach.feed = differs(effect, here, faster, reach);
     }
+    if (!named.empty()) add_elsewhere(effect, named, reach);
     return reach;
   }
 
@@ -250,6 +247,52 @@ class ReachProbe {
     return reach;
   }
 
+  void add_dependence(const Effect& effect, const Conditions& conditions, const Eigen::MatrixXd& there,
+                      EffectReach& reach) {
+    if (!there.isZero(0.0)) reach.acts = true;
+    for (const Axis& axis : machine_.axes) {
+      const std::size_t a = index_of(axis.name);
+      if (!reach.position[a])
+        reach.position[a] = differ(there, at(effect, conditions, moved(a), directions_));
+      if (!reach.direction[a])
+        reach.direction[a] = differ(there, at(effect, conditions, positions_, turned(a)));
+    }
+  }
+
+  /// An effect may act, and depend on what it is written of, where several conditions are far from the stated
+  /// ones at once: a product of temperatures, a step in time.
+  void add_elsewhere(const Effect& effect, const std::set<Variable>& named, EffectReach& reach) {
+    constexpr std::array<double, 4> kFar = {1.0, -6.0, 7.0, 30.0};
+    for (const double far : kFar) {
+      try {
+        const Conditions other = moved_by(far);
+        add_dependence(effect, other, at(effect, other, positions_, directions_), reach);
+      } catch (const InputError&) {  // an expression that is not finite there
+      }
+    }
+    if (!reach.acts) return;
+    for (const Variable& each : named) {
+      if (each.kind == Variable::Kind::Time) reach.time |= conditions_.time.has_value();
+      if (each.kind == Variable::Kind::Feed) reach.feed |= conditions_.feed.has_value();
+      for (const auto& [channel, value] : conditions_.temperature_degC) {
+        if (each.written() == temperature_of(channel).written()) reach.temperature.insert(channel);
+      }
+    }
+  }
+
+  /// Every temperature by its own multiple of a kelvin, time of 20 minutes and feed of 1 m/min.
+  Conditions moved_by(double far) const {
+    Conditions other = conditions_;
+    double step = 1.7;
+    for (auto& [channel, value] : other.temperature_degC) {
+      value += far * step;
+      step *= 1.13;
+    }
+    if (other.time) *other.time = std::max(0.0, *other.time + far * 1234.0);
+    if (other.feed) *other.feed = std::max(0.0, *other.feed + far * 0.017);
+    return other;
+  }
+
   Eigen::MatrixXd at(const Effect& effect, const Conditions& conditions,
                      std::span<const AxisPosition> positions, std::span<const ApproachDirection> directions) {
     PoseReadings readings(machine_, tool_, conditions, clock_start_);
@@ -261,12 +304,8 @@ class ReachProbe {
                EffectReach& reach) {
     const Eigen::MatrixXd there = at(effect, other, positions_, directions_);
     if (!differ(here, there)) return false;
+    add_dependence(effect, other, there, reach);
     reach.acts = true;
-    for (const Axis& axis : machine_.axes) {
-      const std::size_t a = index_of(axis.name);
-      if (!reach.position[a]) reach.position[a] = differ(there, at(effect, other, moved(a), directions_));
-      if (!reach.direction[a]) reach.direction[a] = differ(there, at(effect, other, positions_, turned(a)));
-    }
     return true;
   }
 
@@ -310,7 +349,7 @@ MachineEffects::MachineEffects(const FitResult& result, const Tool& tool, const 
       one.effect = std::move(effect);
       if (!acts_on_machine(*one.effect)) continue;
       if (!probe) probe.emplace(shared->machine, shared->tool, conditions, shared->clock_start);
-      one.reach = probe->reach_of(*one.effect);
+      one.reach = probe->reach_of(*one.effect, conditions_of_effect(spec, *one.effect));
       if (!one.reach.acts) continue;
       one.label = effect_label(*one.effect);
       one.shape = one.effect->shape_values();
@@ -482,10 +521,11 @@ std::vector<EffectOnNoPose> effects_on_no_pose(const FitResult& result) {
     if (kind == nullptr) continue;
     const std::unique_ptr<Effect> effect = kind->make(spec, result.identified.file);
     if (!acts_on_machine(*effect)) continue;
+    const std::set<Variable> named = conditions_of_effect(spec, *effect);
     const bool acts = std::ranges::any_of(result.machine.tools, [&](const Tool& tool) {
-      return ReachProbe(result.machine, tool, conditions, clock_start).reach_of(*effect).acts;
+      return ReachProbe(result.machine, tool, conditions, clock_start).reach_of(*effect, named).acts;
     });
-    if (!acts) found.push_back({effect_label(*effect), conditions_of_effect(spec, *effect)});
+    if (!acts) found.push_back({effect_label(*effect), named});
   }
   return found;
 }

@@ -5,12 +5,15 @@
 
 #include <cmath>
 #include <memory>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/effect_campaign.h"
 #include "volcal/identify/errors/acting_conditions.h"
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/machine_effects.h"
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/identify/errors/volume/faded_in_volume.h"
@@ -200,6 +203,28 @@ TEST_F(BeyondConditions, TheErrorDependsOnTheTemperatureThatHidesIt) {
 
 TEST_F(BeyondConditions, StatedModelsHoldForTheMeanOfTheirReadings) {
   EXPECT_EQ(default_conditions(result_).temperature_degC.at("spindle"), 21.0);
+}
+
+/// Products of temperatures, and steps in time, act where several conditions are far from the stated ones.
+TEST(ActingConditions, AreThoseThatAnEffectIsWrittenOf) {
+  for (const auto& [expression, acting] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {"x * (T_air - 20) * (T_spindle - 20)", {"T_air", "T_spindle"}},
+           {"x * (T_air - 20) * t", {"T_air", "time"}},
+           {"x * max(T_air - 22, 0)", {"T_air"}},
+           {"x * (t > 8000)", {"time"}},
+           {"feed * (T_air - 20)", {"T_air", "feed"}},
+       }) {
+    ModelSpec model;
+    model.default_function.basis = "zero";
+    model.effects = {effect_spec(
+        "custom", {{"target", std::string("EXX")}, {"expression", expression}, {"amplitude", 1e-9}})};
+    const FitResult result = stated_result(testing_support::effect_campaign().machine, model);
+    EXPECT_TRUE(effects_on_no_pose(result).empty()) << expression;
+    std::set<std::string> names;
+    for (const Variable& variable : conditions_that_act(result, default_conditions(result)))
+      names.insert(variable.name());
+    EXPECT_EQ(names, std::set<std::string>(acting.begin(), acting.end())) << expression;
+  }
 }
 
 }  // namespace

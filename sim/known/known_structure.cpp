@@ -40,7 +40,15 @@ void known_product_coupling(const HiddenSettings& settings, HiddenScene& scene) 
              scene);
 }
 
+/// With one tool; without that key, in proportion to the length of every tool.
 void known_tool_load(const HiddenSettings& settings, HiddenScene& scene) {
+  if (!settings.has("tool"))
+    return add_motion(
+        settings,
+        [tools = settings.machine().tools](const MachineState& state) {
+          return tools[state.tool].offset.norm();
+        },
+        scene);
   add_motion(
       settings,
       [tool = settings.tool()](const MachineState& state) { return state.tool == tool ? 1.0 : 0.0; }, scene);

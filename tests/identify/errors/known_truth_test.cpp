@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
+#include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "tests/support/five_axis.h"
@@ -317,6 +320,66 @@ TEST(KnownTruth, ExpressionsAndSurfacesAreThoseOfTheModelWhereverTheyAct) {
     add_surface(machine, surface);
   }
   for (const EffectSpec& effect : effects) expect_explained(machine, effect, measurements);
+}
+
+/// Keys that are given, and words among their values, without names of places and axes.
+std::string variant_of(const EffectSpec& spec) {
+  std::string variant = spec.kind;
+  for (const KeySchema& key : find_effect(spec.kind)->schema().keys) {
+    const std::string stem(stem_of_key(key.key));
+    if (spec.options.has(stem)) variant += " " + stem + (key.choices.empty() ? "" : *spec.options.text(stem));
+  }
+  return variant;
+}
+
+/// With amplitudes that change a reading by 12 um or urad at most; none where readings hardly see it.
+std::optional<EffectSpec> with_amplitudes(const Campaign& campaign, const ModelSpec& without,
+                                          EffectSpec spec) {
+  constexpr double kWanted = 12e-6, kSeen = 1e-3;
+  const auto effect = find_effect(spec.kind)->make(spec, "");
+  double amplitude = 1e-6;
+  const auto set = [&] {
+    double sign = 1.0;
+    for (const EffectAmplitude& each : effect->amplitudes()) {
+      spec.options.set(std::string(stem_of_key(each.key)), sign * amplitude);
+      sign *= -0.6;
+    }
+  };
+  set();
+  ModelSpec with = without;
+  with.effects = {spec};
+  const double change = largest_residual(campaign, with);
+  if (change < kSeen * amplitude) return std::nullopt;
+  amplitude *= kWanted / change;
+  set();
+  return spec;
+}
+
+TEST(KnownTruth, EveryVariantOfAnEffectIsThatOfTheModel) {
+  const Machine machine = machine_with_homes();
+  ModelSpec without;
+  without.default_function.basis = "zero";
+  std::vector<sim::Measurement> measurements = further_measurements();
+  measurements.push_back(usual_measurements()[1]);
+  measurements.back().name = "tracer";
+  for (sim::Measurement& each : measurements) {
+    if (auto* tracking = std::get_if<sim::Tracking>(&each.settings)) tracking->grid = {3, 3, 2};
+  }
+  const Campaign campaign = measured_without_noise(machine, without, measurements);
+  std::set<std::string> seen;
+  for (const EffectKind* kind : effect_kinds()) {
+    for (const EffectSpec& example : kind->examples(campaign)) {
+      if (!seen.insert(variant_of(example)).second) continue;
+      const auto effect = with_amplitudes(campaign, without, example);
+      if (!effect) continue;
+      ModelSpec with = without;
+      with.effects = {*effect};
+      const Campaign measured = measured_without_noise(machine, with, measurements);
+      const double overrun = kind->schema().kind == "pre-travel" ? 0.1 * 12e-6 : 0.0;
+      EXPECT_LT(largest_residual(measured, with), kFirstOrder + overrun) << variant_of(*effect);
+    }
+  }
+  EXPECT_GT(seen.size(), effect_kinds().size());
 }
 
 /// Single contacts on a sphere of a trunnion.

@@ -3,8 +3,10 @@
 /// Table 1) and on a spatial grid (9.3, Table 2), with standard uncertainties, and what clause 9.1 asks to be
 /// stated beside them. Absolute values, signs of ISO 841 and ISO 230-1; mm, um, urad, deg in the files.
 
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "volcal/identify/compensation/table_format.h"
@@ -49,6 +51,8 @@ struct TableMetadata {
   std::map<std::string, std::string> entries;  ///< every key
   TablesMadeFor made_for;                      ///< of error tables; empty in files that do not say
   RecordedConditions conditions;               ///< those of `made_for`
+  /// Of axes of which a part was measured, m or rad; none in files that do not say.
+  std::map<AxisName, std::pair<double, double>> measured;
 };
 TableMetadata read_table_metadata(const TableFile& file);
 

@@ -59,6 +59,15 @@ void add_machine(MetadataWriter& out, const Machine& machine) {
   for (const Tool& tool : machine.tools) out.add_point_mm("tools." + tool.name + ".offset", tool.offset);
 }
 
+/// Of axes of which a part was measured.
+void add_measured(MetadataWriter& out, const FitResult& result) {
+  for (const auto& [axis, ends] : model_with_measured_travel(result).measured) {
+    const auto [unit, factor] = position_unit(axis);
+    out.add_number(fmt::format("axis.{}.measured_from_{}", letter_of(axis), unit), ends.first / factor);
+    out.add_number(fmt::format("axis.{}.measured_to_{}", letter_of(axis), unit), ends.second / factor);
+  }
+}
+
 /// What is decided beyond the names of ISO 230-1 (ISO/TR 16907, 9.1).
 void add_rotary_types(MetadataWriter& out, const FitResult& result, const TableFormatOptions& options) {
   out.add("rotary.error_motions",
@@ -152,6 +161,7 @@ class MetadataReader {
     metadata.type = compensation_type();
     for (const auto& [key, row] : rows_) metadata.entries[key] = row.cells[1];
     if (metadata.entries.contains(std::string(kEffectConditions))) read_effects(metadata);
+    for (const Axis& axis : metadata.machine.axes) read_measured(axis, metadata);
     return metadata;
   }
 
@@ -166,6 +176,16 @@ class MetadataReader {
   double number(const std::string& key) const { return csv_number(row(key), 1, key); }
   [[noreturn]] void fail(const std::string& key, const std::string& remedy) const {
     throw InputError(row(key).place, key + " is \"" + text(key).substr(0, 40) + "\"", remedy);
+  }
+
+  void read_measured(const Axis& axis, TableMetadata& metadata) const {
+    const auto [unit, factor] = position_unit(axis.name);
+    const std::string from = fmt::format("axis.{}.measured_from_{}", letter_of(axis.name), unit);
+    const std::string to = fmt::format("axis.{}.measured_to_{}", letter_of(axis.name), unit);
+    if (!rows_.contains(from) && !rows_.contains(to)) return;
+    const std::pair ends(number(from) * factor, number(to) * factor);
+    if (!(ends.first <= ends.second)) fail(to, "give an end that is not below " + from);
+    metadata.measured[axis.name] = ends;
   }
 
   void read_effects(TableMetadata& metadata) const {
@@ -273,6 +293,7 @@ std::string table_metadata_csv(const FitResult& result, const TableFormatOptions
   out.add_point_mm("specific_lines", {lines[0], lines[1], lines[2]});
   if (!options.type.rotary().empty()) add_rotary_types(out, result, options);
   add_machine(out, result.machine);
+  add_measured(out, result);
   add_run(out, result, options);
   for (const std::string_view key : recordable_conditions()) {
     const auto recorded = options.record.conditions.find(std::string(key));

@@ -39,6 +39,14 @@ TEST(Exercise3, IsOneCommand) {
     EXPECT_EQ(std::round(errors[y].at("error_um")[1].get<double>()), printed[y]) << "y = " << y << " mm";
 }
 
+TEST(Exercise3, PrintsNoUncertaintyWhereNoneIsStated) {
+  const auto run = run_program("tables " + kExercises + "slideway.toml --at Y=1");
+  EXPECT_THAT(run.output, HasSubstr("of no stated uncertainty"));
+  EXPECT_THAT(run.output, Not(HasSubstr("+-")));
+  const auto json = run_program("tables " + kExercises + "slideway.toml --at Y=1 --json");
+  EXPECT_TRUE(Json::parse(json.output).at("volumetric_errors")[0].at("u_um").is_null());
+}
+
 constexpr const char* kKnown = R"(
 [functions]
 default = { basis = "zero" }
@@ -137,6 +145,12 @@ TEST_F(KnownErrors, AreHeldBeyondWhatWasMeasured) {
   done("simulate " + path("study.toml") + " --errors " + path("held.toml") + " -o " + path("campaign"));
   EXPECT_LT(left("campaign", path("held.toml")).second, 0.01);
   EXPECT_GT(left("campaign", path("known.toml")).second, 1.0);
+  // A folder of tables keeps to what was measured, wherever its rows stand.
+  write("rigid.toml", known.substr(0, known.find("[[effects]]")) + "[measured]\nX_mm = [-200, 150]\n");
+  done("tables " + path("rigid.toml") + " --format csv --positions 4 -o " + path("tables"));
+  EXPECT_THAT(testing::content(path("tables/metadata.csv")), HasSubstr("axis.X.measured_to_mm,150\n"));
+  EXPECT_EQ(run_program("tables " + path("tables") + " --at X=149 --no-extrapolation").exit_code, 0);
+  EXPECT_EQ(run_program("tables " + path("tables") + " --at X=151 --no-extrapolation").exit_code, 2);
   write("wrong.toml", known + "[measured]\nX_mm = [150, -200]\n");
   refused("budget " + path("wrong.toml"), "measured.X_mm is not the first and the last position",
           "[FIRST, LAST]");

@@ -138,7 +138,7 @@ FitResult result_of_tables(const std::filesystem::path& folder) {
     add_function(symbol, rows, model);
     add_reversal(symbol, rows, metadata.machine.axis(symbol.axis).home, model);
   }
-  model.measured = measured.ranges();
+  model.measured = metadata.measured.empty() ? measured.ranges() : metadata.measured;
   model.conditions = metadata.conditions;
   FitResult result = stated_result(metadata.machine, model);
   add_finding_of_tables(metadata.made_for, result);

@@ -20,7 +20,7 @@ std::vector<std::string> cells_of(const BudgetLine& line, double coverage_factor
           fixed_number(line.rms / kMicro, 2),
           fixed_number(line.max / kMicro, 2),
           fixed_number(100.0 * line.share, 1),
-          fixed_number(coverage_factor * line.u_rms / kMicro, 2)};
+          line.u_rms > 0.0 ? fixed_number(coverage_factor * line.u_rms / kMicro, 2) : "-"};
 }
 
 nlohmann::ordered_json line_json(const BudgetLine& line) {
@@ -29,7 +29,7 @@ nlohmann::ordered_json line_json(const BudgetLine& line) {
   json["rms_um"] = line.rms / kMicro;
   json["max_um"] = line.max / kMicro;
   json["share_percent"] = 100.0 * line.share;
-  json["u_rms_um"] = line.u_rms / kMicro;
+  json["u_rms_um"] = line.u_rms > 0.0 ? nlohmann::ordered_json(line.u_rms / kMicro) : nullptr;
   return json;
 }
 

@@ -10,6 +10,7 @@
 
 #include "volcal/identify/criticism/catalogue/families.h"
 #include "volcal/identify/criticism/scans/generic_scan.h"
+#include "volcal/identify/criticism/scans/reading_factors.h"
 #include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/statistics/even_sample.h"
@@ -102,6 +103,13 @@ void consider_families(const LinearModel& model, const std::vector<Family>& fami
   }
 }
 
+Finding finding_of(const ReadingFactor& found, const Campaign& campaign) {
+  std::vector<std::string> setups;
+  for (const std::size_t setup : found.setups) setups.push_back(campaign.setups[setup].name);
+  return {FindingCode::ReadingsMisread,
+          {{"setups", setups}, {"columns", found.columns}, {"factor", FindingNumber{found.factor}}}};
+}
+
 void consider_scans(const std::vector<GenericTest>& tests, Leading& leading) {
   const double log10_count = std::log10(static_cast<double>(std::max<std::size_t>(1, tests.size())));
   for (const GenericTest& test : tests) {
@@ -135,6 +143,7 @@ Screening screen(const Campaign& campaign, const FitResult& result, int threads,
                                                                   : kThresholds.screening_log10_risk);
   screening.observations = model.size();
   screening.of_a_sample = model.size() < result.residuals.size();
+  if (const auto found = misread_setup(model, projector)) screening.misread = finding_of(*found, campaign);
   return screening;
 }
 
@@ -189,6 +198,7 @@ void screen_fit(const Campaign& campaign, const FitOptions& options, FitResult& 
 }
 
 void judge(const Screening& screening, FitResult& result) {
+  if (screening.misread) result.findings.insert(result.findings.begin(), *screening.misread);
   const std::optional<Finding> contradicted = finding_of(screening);
   if (!contradicted) return;
   if (result.status == FitStatus::Ok) result.status = FitStatus::LackOfFit;

@@ -16,6 +16,7 @@
 #include "volcal/model/description/rotary_places.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
+#include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
@@ -176,6 +177,7 @@ double most_along(const MeasurementModel& model, int direction, const Eigen::Vec
 }
 
 void report_stations_in_plane(const MeasurementModel& model, FitResult& result) {
+  if (station_names(model.campaign()).empty()) return;
   for (const AxisName axis : kLinearAxes) {
     if (model.campaign().machine.has_axis(axis)) continue;
     const double most = most_along(model, direction_of(axis), result.parameters);

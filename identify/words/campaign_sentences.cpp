@@ -114,6 +114,20 @@ std::string angles_in_radians(const Finding& finding) {
              columns.size() == 1 ? "it is" : "they are", join_names(entries));
 }
 
+std::string misread(const Finding& finding) {
+  std::vector<std::string> setups, entries;
+  for (const std::string& setup : finding.texts("setups")) setups.push_back('"' + setup + '"');
+  const std::vector<std::string> columns = finding.texts("columns");
+  const double factor = finding.number("factor").si;
+  for (const std::string& column : columns) entries.push_back(fmt::format("{} = {:.6g}", column, factor));
+  const bool one = setups.size() == 1;
+  return fmt::format(
+      "{} {}: the other readings expect {} {} {}: if so add scale = {{ {} }}", one ? "setup" : "setups",
+      join_names(setups), one ? "its" : "their", join_names(columns),
+      factor < 0.0 ? std::string("with the opposite sign") : fmt::format("{:.4g} times as large", factor),
+      join_names(entries));
+}
+
 std::string duplicated(const Finding& finding) {
   return fmt::format("setups \"{}\" and \"{}\" hold the same readings: they count twice; remove one of them",
                      finding.text("first_setup"), finding.text("setup"));
@@ -144,6 +158,7 @@ std::span<const SentenceMaker> campaign_sentences() {
       {FindingCode::ReadingsMovesTooFast, moves_too_fast},
       {FindingCode::ReadingsAnglesMisread, angles_misread},
       {FindingCode::ReadingsAnglesInRadians, angles_in_radians},
+      {FindingCode::ReadingsMisread, misread},
       {FindingCode::ReadingsDuplicated, duplicated},
       {FindingCode::ReadingsDirectionsDerived, directions_derived},
       {FindingCode::ReadingsLeftOut, left_out},

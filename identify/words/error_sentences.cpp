@@ -105,6 +105,12 @@ std::string rotary_unknown_to_tables(const Finding& finding) {
 }
 
 std::string levers_of_tilted_head(const Finding& finding) {
+  if (finding.text("axes").empty())
+    return fmt::format(
+        "tables of linear axes are made with the rotary axes at 0: what the errors of linear axes make of "
+        "other positions of these leaves {:.2f} um RMS, {:.2f} um at most over all poses; volcal compensate "
+        "corrects a program with the axes where they stand",
+        finding.number("rms").in_unit(), finding.number("max").in_unit());
   return fmt::format(
       "tables of linear axes are made with the rotary axes at 0: where the head ({}) is tilted, angles of "
       "linear axes act by another lever, which leaves {:.2f} um RMS, {:.2f} um at most over all poses; "
@@ -122,8 +128,19 @@ std::string tables_off_ideal(const Finding& finding) {
 std::string rotary_tables_off_ideal(const Finding& finding) {
   return fmt::format(
       "tables of rotary axes are up to {:.2f} um off what their types could correct: what changes within one "
-      "of their steps, as the errors of a worm, needs a finer --rotary-step",
+      "of their steps, as the errors of a worm, needs a finer --rotary-step; what depends on two axes at "
+      "once "
+      "is in grids of rotary axes alone",
       finding.number("off").in_unit());
+}
+
+std::string rotary_tables_without_directions(const Finding& finding) {
+  return fmt::format(
+      "tables of rotary axes are the mean of both directions of approach: reversals of these axes leave "
+      "{:.2f} "
+      "um RMS; neutral-csv and linuxcnc-grid tell directions apart, others need the control's own backlash "
+      "compensation",
+      finding.number("rms").in_unit());
 }
 
 std::string tables_leave_more(const Finding& finding) {
@@ -173,6 +190,7 @@ std::span<const SentenceMaker> error_sentences() {
       {FindingCode::LeversOfTiltedHead, levers_of_tilted_head},
       {FindingCode::TablesOffIdeal, tables_off_ideal},
       {FindingCode::RotaryTablesOffIdeal, rotary_tables_off_ideal},
+      {FindingCode::RotaryTablesWithoutDirections, rotary_tables_without_directions},
       {FindingCode::TablesLeaveMore, tables_leave_more},
       {FindingCode::RotaryErrorsNotInModel, rotary_not_in_model},
       {FindingCode::RotaryHarmonicsHidden, harmonics_hidden},

@@ -251,12 +251,12 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
   if (made.all_axes) fmt::print("{}", all_axes_text(*made.all_axes));
   fmt::print("Verified: {}.\n", made.format->verified);
   if (made.tolerance > 0.0 && !made.step.reached) {
-    const bool limited = made.format->limits.points_per_table > 0 || made.format->limits.resolution > 1e-10;
-    fmt::print("! {} {:g} um: {}\n",
-               limited ? "the limits of the controller do not allow" : "no step that is tried reaches",
-               made.tolerance / kMicro,
-               limited ? limits_text(made.format->limits)
-                       : std::string("give --step for a finer table, or --tolerance for a coarser one"));
+    fmt::print(
+        "! {} {:g} um: {}\n",
+        made.step.limited ? "the limits of the controller do not allow" : "no step that is tried reaches",
+        made.tolerance / kMicro,
+        made.step.limited ? limits_text(made.format->limits)
+                          : std::string("give --step for a finer table, or --tolerance for a coarser one"));
   }
   if (!arguments.superimpose.empty())
     fmt::print("They replace {} and correct what it corrected too; before = with it.\n",

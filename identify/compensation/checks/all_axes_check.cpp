@@ -11,17 +11,29 @@
 namespace volcal {
 namespace {
 
-template <class CorrectionAt>
-ErrorLeft left_of(const FiveAxisCompensation& machine, const std::vector<AxisPosition>& poses,
-                  const CorrectionAt& correction_at) {
-  std::vector<Eigen::Vector3d> places, errors;
-  for (const AxisPosition& pose : poses) {
-    places.push_back(machine.nominal_point_w(pose));
-    errors.push_back(machine.left_by(correction_at(pose), pose).displacement_w);
+/// Poses of all axes, approached from either side as often.
+class ApproachedPoses {
+ public:
+  explicit ApproachedPoses(const Machine& machine)
+      : poses_(poses_of_all_axes(machine, kAllAxesPoses)),
+        approaches_(approaches_of_all_axes(machine, kAllAxesPoses)) {}
+
+  template <class CorrectionAt>
+  ErrorLeft left_of(const FiveAxisCompensation& machine, const CorrectionAt& correction_at) const {
+    std::vector<Eigen::Vector3d> places, errors;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      const Correction correction = correction_at(poses_[i], approaches_[i]);
+      places.push_back(machine.nominal_point_w(poses_[i]));
+      errors.push_back(machine.left_by(correction, poses_[i], approaches_[i]).displacement_w);
+    }
+    const VolumetricFigures figures = volumetric_figures(without_rigid_motion(places, errors));
+    return {figures.rms, figures.max};
   }
-  const VolumetricFigures figures = volumetric_figures(without_rigid_motion(places, errors));
-  return {figures.rms, figures.max};
-}
+
+ private:
+  std::vector<AxisPosition> poses_;
+  std::vector<ApproachDirection> approaches_;
+};
 
 }  // namespace
 
@@ -40,18 +52,18 @@ std::optional<AllAxesCheck> check_all_axes(const FitResult& result, const TableF
   whole.type = CompensationType::volumetric();
   whole.active.reset();
   const Compensation ideal = ideal_compensation(result, whole);
-  const std::vector<AxisPosition> poses = poses_of_all_axes(machine, kAllAxesPoses);
-  const auto none = [](const AxisPosition&) { return Correction{}; };
-  const auto by_tables = [&](const AxisPosition& pose) {
-    Correction correction = tables.correction(pose, {});
-    if (options.active) correction.linear -= options.active->correction(pose, {}).linear;
+  const ApproachedPoses poses(machine);
+  const auto none = [](const AxisPosition&, const ApproachDirection&) { return Correction{}; };
+  const auto by_tables = [&](const AxisPosition& pose, const ApproachDirection& from) {
+    Correction correction = tables.correction(pose, from);
+    if (options.active) correction.linear -= options.active->correction(pose, from).linear;
     return correction;
   };
-  const auto at_rest = [&](const AxisPosition& pose) {
-    return Correction{ideal.correction(without_rotary_axes(pose), {})};
+  const auto at_rest = [&](const AxisPosition& pose, const ApproachDirection& from) {
+    return Correction{ideal.correction(without_rotary_axes(pose), from)};
   };
-  return AllAxesCheck{left_of(of_all, poses, none), left_of(of_all, poses, by_tables),
-                      left_of(of_linear, poses, at_rest)};
+  return AllAxesCheck{poses.left_of(of_all, none), poses.left_of(of_all, by_tables),
+                      poses.left_of(of_linear, at_rest)};
 }
 
 }  // namespace volcal

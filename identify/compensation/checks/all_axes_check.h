@@ -18,9 +18,9 @@ struct AllAxesCheck {
   ErrorLeft levers;
 };
 
-/// By the exact model with the errors as identified, mean of both directions, after the best rigid motion of
-/// the workpiece. Where tables were active, the new ones replace them. Nothing for a machine without rotary
-/// axes.
+/// By the exact model with the errors as identified, approached from either side as often, after the best
+/// rigid motion of the workpiece. Where tables were active, the new ones replace them. Nothing for a machine
+/// without rotary axes.
 std::optional<AllAxesCheck> check_all_axes(const FitResult& result, const TableFormatOptions& options,
                                            const CompensationTables& tables);
 

@@ -11,6 +11,7 @@ namespace volcal {
 namespace {
 
 constexpr double kNotableLever = 0.1e-6;      // m
+constexpr double kNotableReversal = 0.1e-6;   // m
 constexpr double kNotableIncrease = 0.05e-6;  // m
 constexpr double kCoarseStep = 3.0;           // tolerances
 
@@ -68,6 +69,12 @@ void report_rotary_step(double tolerance, MadeTables& made) {
       {FindingCode::RotaryTablesOffIdeal, {{"off", in_micrometres(made.rotary_check->deviation)}}});
 }
 
+void report_rotary_directions(MadeTables& made) {
+  if (!made.rotary_check || made.rotary_check->without_directions < kNotableReversal) return;
+  made.cautions.push_back({FindingCode::RotaryTablesWithoutDirections,
+                           {{"rms", in_micrometres(made.rotary_check->without_directions)}}});
+}
+
 /// Positions that are further apart than the errors change can add to them.
 void report_more_than_none(MadeTables& made) {
   const auto report = [&made](double without, double with) {
@@ -107,6 +114,7 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
   report_levers(result.machine, made);
   report_step(result, made);
   report_rotary_step(wanted, made);
+  report_rotary_directions(made);
   report_more_than_none(made);
   return made;
 }

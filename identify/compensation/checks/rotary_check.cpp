@@ -16,11 +16,17 @@ namespace {
 
 using LeftAtPoses = std::vector<FiveAxisCompensation::Left>;
 
+/// A pose and how its axes reach it.
+struct Approached {
+  AxisPosition pose;
+  ApproachDirection from{};
+};
+
 template <class CorrectionAt>
-LeftAtPoses left_under(const FiveAxisCompensation& ideal, const std::vector<AxisPosition>& poses,
+LeftAtPoses left_under(const FiveAxisCompensation& ideal, const std::vector<Approached>& poses,
                        const CorrectionAt& correction_at) {
   LeftAtPoses left;
-  for (const AxisPosition& pose : poses) left.push_back(ideal.left_by(correction_at(pose), pose));
+  for (const Approached& at : poses) left.push_back(ideal.left_by(correction_at(at), at.pose, at.from));
   return left;
 }
 
@@ -57,10 +63,23 @@ class RotaryJudgement {
         tables_(tables) {}
 
   const FiveAxisCompensation& ideal() const { return ideal_; }
-  Correction by_tables(const AxisPosition& pose) const {
-    Correction correction = tables_.correction(pose, {});
-    if (has_linear_) correction.linear -= of_linear_.correction(without_rotary_axes(pose), {});
+  Correction by_tables(const Approached& at) const {
+    Correction correction = tables_.correction(at.pose, at.from);
+    if (has_linear_) correction.linear -= of_linear_.correction(without_rotary_axes(at.pose), at.from);
     return correction;
+  }
+  Correction by_ideal(const Approached& at) const { return ideal_.correction(at.pose, at.from); }
+
+  /// Largest displacement that the tables make otherwise than the ideal, mean of both directions.
+  double deviation(const std::vector<AxisPosition>& poses) const {
+    double largest = 0.0;
+    for (const AxisPosition& pose : poses) {
+      const Approached at{pose};
+      const Eigen::Vector3d moved_w = ideal_.left_by(by_tables(at), pose).displacement_w -
+                                      ideal_.left_by(by_ideal(at), pose).displacement_w;
+      largest = std::max(largest, moved_w.norm());
+    }
+    return largest;
   }
 
  private:
@@ -90,17 +109,22 @@ std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const Fi
   if (options.type.rotary().empty()) return std::nullopt;
   const RotaryJudgement judgement(format, result, options, tables);
   const FiveAxisCompensation& ideal = judgement.ideal();
-  const std::vector<AxisPosition> poses = poses_of_all_axes(result.machine, kRotaryCheckPoses);
-  const LeftAtPoses before = left_under(ideal, poses, [](const AxisPosition&) { return Correction{}; });
-  const LeftAtPoses by_ideal =
-      left_under(ideal, poses, [&](const AxisPosition& pose) { return ideal.correction(pose); });
-  const LeftAtPoses by_tables =
-      left_under(ideal, poses, [&](const AxisPosition& pose) { return judgement.by_tables(pose); });
-  RotaryCheck check{figures_of(before), figures_of(by_ideal), figures_of(by_tables)};
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    check.deviation =
-        std::max(check.deviation, (by_tables[i].displacement_w - by_ideal[i].displacement_w).norm());
-  return check;
+  const std::vector<AxisPosition> places = poses_of_all_axes(result.machine, kRotaryCheckPoses);
+  const std::vector<ApproachDirection> approaches = approaches_of_all_axes(result.machine, kRotaryCheckPoses);
+  std::vector<Approached> poses, mean_poses;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    poses.push_back({places[i], approaches[i]});
+    mean_poses.push_back({places[i]});
+  }
+  const auto by_tables = [&](const Approached& at) { return judgement.by_tables(at); };
+  const auto figures = [&](const auto& correction_at) {
+    return figures_of(left_under(ideal, poses, correction_at));
+  };
+  const RotaryLeft left = figures(by_tables), of_mean = figures_of(left_under(ideal, mean_poses, by_tables));
+  return RotaryCheck{figures([](const Approached&) { return Correction{}; }),
+                     figures([&](const Approached& at) { return judgement.by_ideal(at); }), left,
+                     judgement.deviation(places),
+                     std::sqrt(std::max(0.0, left.rms * left.rms - of_mean.rms * of_mean.rms))};
 }
 
 double choose_rotary_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
@@ -135,7 +159,7 @@ std::vector<RotaryCorrected> rotary_corrections(const TableFormat& format, const
   const RotaryJudgement judgement(format, result, options, tables);
   std::vector<RotaryCorrected> corrected;
   for (const AxisPosition& pose : poses) {
-    const Correction correction = judgement.by_tables(pose);
+    const Correction correction = judgement.by_tables({pose});
     corrected.push_back(
         {correction, judgement.ideal().left_by({}, pose), judgement.ideal().left_by(correction, pose)});
   }

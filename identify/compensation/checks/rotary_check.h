@@ -22,12 +22,16 @@ struct RotaryLeft {
 
 struct RotaryCheck {
   RotaryLeft before, ideal, exported;
-  double deviation = 0.0;  ///< of the tables from the ideal, largest displacement of the functional point, m
+  /// Of the tables from the ideal, both as the mean of the directions: largest displacement of the functional
+  /// point, m.
+  double deviation = 0.0;
+  /// RMS of what the tables leave since they are the mean of the directions of approach, m.
+  double without_directions = 0.0;
 };
 
-/// By the exact model with the identified errors of the rotary axes alone, mean of both directions; what the
-/// tables correct of linear axes is taken off as the ideal compensation has it. Nothing for a type without
-/// rotary axes.
+/// By the exact model with the identified errors of the rotary axes alone, approached from either side as
+/// often; what the tables correct of linear axes is taken off as the ideal compensation has it. Nothing for a
+/// type without rotary axes.
 std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const FitResult& result,
                                              const TableFormatOptions& options,
                                              const CompensationTables& tables);

@@ -242,7 +242,7 @@ double deviation_of(const TableFormat& format, const FitResult& result, const Ta
 
 StepChoice choose_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
                        double tolerance) {
-  if (!format.limits.sampled) return {0.0, 0.0, true};
+  if (!format.limits.sampled) return {0.0, 0.0, true, false};
   const Compensation ideal = sampled_compensation(format, result, options);
   double longest = 0.0;
   for (const AxisName axis : linear_axes_of(result.machine))
@@ -255,10 +255,11 @@ StepChoice choose_step(const TableFormat& format, const FitResult& result, Table
       const std::vector<TableFile> files = write_tables(format, result, options);
       if (bytes_of(files) > kMostTableBytes) break;
       const double deviation = deviation_from(ideal, format, result, options, format.read(files));
-      if (deviation < best.deviation) best = {step, deviation, false};
+      if (deviation < best.deviation) best = {step, deviation, false, false};
       best.reached = best.deviation <= tolerance + 0.5 * format.limits.resolution;
     } catch (const InputError& error) {  // too many points, or values out of range where it is too coarse
       if (!refused) refused = error;
+      best.limited = best.step > 0.0;
     }
     if (best.reached) break;
   }

@@ -268,6 +268,7 @@ struct Screening {
   std::string leading;           ///< the most improbable: "EAX by z^2", "something that depends on z along Z"
   double log10_p = 0.0;          ///< its, family-wise
   double rms = 0.0;              ///< SI: root mean square over the readings of what it would explain
+  std::optional<Finding> misread;  ///< "readings.misread": sign or unit of setups (reading_factors.h)
 };
 
 /// "model.contradicted"; nothing where nothing contradicts.

@@ -29,6 +29,14 @@ struct Thresholds {
   /// (open_errors.h); above: it is not named while these are missing. As strict as for screening and for the
   /// same reason: their variances and the noise are estimated and taken as known. `volcal study mills`.
   double open_errors_log10_risk = -6.0;
+  /// Chi-squared. Readings that are multiplied by -1 or a ratio of units lower it by more: said. As 5
+  /// standard deviations of one setup among some sixty; no study.
+  double reading_factor_gain = 30.0;
+  /// Of the best factor's. The slip's is less: another factor explains the readings better.
+  double reading_factor_of_best = 0.8;
+  /// Standard uncertainties, and share of the factor, by which the others may expect another one.
+  double reading_factor_u = 4.0;
+  double reading_factor_share = 0.1;
   /// Observations beyond what the parameters take. Fewer: nothing is screened.
   double screening_spare_observations = 5.0;
   /// Observations. More: an even choice of as many is screened. A shift of a twentieth of sigma between two

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 
 #include "volcal/identify/errors/machine_effects.h"
 #include "volcal/model/description/errors.h"
@@ -49,6 +50,19 @@ void require_identified_rotary_axes(const FitResult& result, const AxisPosition&
 
 std::vector<AxisPosition> poses_of_all_axes(const Machine& machine, int count) {
   return spread_poses(machine, count);
+}
+
+std::vector<ApproachDirection> approaches_of_all_axes(const Machine& machine, int count) {
+  constexpr std::array<int, kAxisCount> kBases = {29, 31, 37, 41, 43,
+                                                  47, 53, 59, 61};  // none of spread_poses()
+  std::vector<ApproachDirection> approaches(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    for (const Axis& axis : machine.axes) {
+      const std::size_t a = index_of(axis.name);
+      approaches[static_cast<std::size_t>(i)][a] = radical_inverse(i + 1, kBases[a]) < 0.5 ? -1 : 1;
+    }
+  }
+  return approaches;
 }
 
 AxisLineErrors line_at_machine_zero(const Machine& machine, const PoseErrors<double>& errors, AxisName axis) {

@@ -322,8 +322,12 @@ std::string where_it_fails(const ComparedModel& model) {
 }  // namespace
 
 std::string failure_sentence(const ComparedModel& model) {
-  const std::optional<Finding> scanned = model.screening ? finding_of(*model.screening) : std::nullopt;
-  return where_it_fails(model) + (scanned ? " But " + contradiction(*scanned) + "." : "");
+  std::string text = where_it_fails(model);
+  if (!model.screening) return text;
+  if (const std::optional<Finding> scanned = finding_of(*model.screening))
+    text += " But " + contradiction(*scanned) + ".";
+  if (model.screening->misread) text += " Note: " + sentence(*model.screening->misread) + ".";
+  return text;
 }
 
 bool fails(const ComparedModel& model) {

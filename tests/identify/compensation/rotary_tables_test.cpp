@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/five_axis.h"
 #include "tests/support/refusal.h"
 #include "tests/support/rotary_machines.h"
 #include "tests/support/table_samples.h"
@@ -13,7 +14,9 @@
 #include "volcal/identify/compensation/five_axis_compensation.h"
 #include "volcal/identify/compensation/rotary_grid_csv.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
+#include "volcal/identify/errors/stated_errors.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
 namespace {
@@ -105,6 +108,31 @@ INSTANTIATE_TEST_SUITE_P(All, RotaryTables,
                                            RotaryCase{"isg-csv", "L-VOL+R-POR", testing::kHead},
                                            RotaryCase{"sinumerik", "L-POS+R-POS", testing::kTrunnion},
                                            RotaryCase{"sinumerik", "R-POS", testing::kHead}));
+
+/// A table that turns back by 30 urad less than it went: the mean of both directions takes none of it.
+TEST(RotaryTablesOfReversals, SayWhatTheirMeanOfDirectionsLeaves) {
+  const Machine machine = testing_support::five_axis_machine(testing::kTrunnion);
+  ModelSpec model;
+  model.default_function.basis = "zero";
+  FunctionSpec turn;
+  turn.basis = "fourier";
+  turn.degree = 1;
+  turn.coefficients = {0.0, 0.0};
+  for (const char* symbol : {"ECC", "EAA"}) model.functions[*ErrorSymbol::parse(symbol)] = turn;
+  model.effects = {effect_spec("reversal", {{"symbol", std::string("ECC")}, {"amplitude", 30e-6}})};
+  const FitResult result = stated_result(machine, model);
+  for (const bool by_direction : {false, true}) {
+    const std::string name = by_direction ? "neutral-csv" : "csv";
+    const TableFormatOptions options = rotary_options("L-VOL+R-VOL");
+    const TableFormat& format = *find_table_format(name);
+    const CompensationTables tables = format.read(write_tables(format, result, options));
+    const RotaryCheck check = *check_rotary_axes(format, result, options, tables);
+    EXPECT_GT(check.before.rms, 1e-6);
+    EXPECT_LT(check.ideal.rms, 0.01e-6);
+    EXPECT_NEAR(check.exported.rms, by_direction ? 0.0 : check.before.rms, 0.02 * check.before.rms) << name;
+    EXPECT_NEAR(check.without_directions, check.exported.rms, 0.01e-6) << name;
+  }
+}
 
 TEST(RotaryTableTypes, AreWhatTheFormatHoldsOfTheMachine) {
   const FitResult result = rotary_result(testing::kTrunnion);

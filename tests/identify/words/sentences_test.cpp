@@ -97,6 +97,19 @@ const std::vector<WordedFinding>& examples() {
         {{"setup", "C"}, {"file", "c.csv"}, {"columns", Texts{"c_deg"}}}},
        "setup \"C\" (c.csv): c_deg holds whole degrees if it is in radians, and no round numbers of degrees: "
        "if so add scale = { c_deg = 57.2957795131 }"},
+      {{FindingCode::ReadingsMisread,
+        {{"setups", std::vector<std::string>{"A", "B"}},
+         {"columns", std::vector<std::string>{"dx_um", "dy_um"}},
+         {"factor", FindingNumber{-1.0}}}},
+       "setups \"A\", \"B\": the other readings expect their dx_um, dy_um with the opposite sign: if so add "
+       "scale "
+       "= { dx_um = -1, dy_um = -1 }"},
+      {{FindingCode::ReadingsMisread,
+        {{"setups", std::vector<std::string>{"A"}},
+         {"columns", std::vector<std::string>{"deviation_um"}},
+         {"factor", FindingNumber{25.4}}}},
+       "setup \"A\": the other readings expect its deviation_um 25.4 times as large: if so add scale = { "
+       "deviation_um = 25.4 }"},
       {{FindingCode::ReadingsDuplicated, {{"setup", "X2"}, {"first_setup", "X"}}},
        "setups \"X\" and \"X2\" hold the same readings: they count twice; remove one of them"},
       {{FindingCode::ReadingsDirectionsDerived,
@@ -631,13 +644,28 @@ const std::vector<WordedFinding>& examples() {
        "tables of linear axes are made with the rotary axes at 0: where the head (CB) is tilted, angles of "
        "linear axes act by another lever, which leaves 1.90 um RMS, 4.30 um at most over all poses; volcal "
        "compensate corrects a program with the axes where they stand"},
+      {{FindingCode::LeversOfTiltedHead,
+        {{"axes", ""},
+         {"rms", FindingNumber{1.9e-6, "um", 1e-6}},
+         {"max", FindingNumber{4.3e-6, "um", 1e-6}}}},
+       "tables of linear axes are made with the rotary axes at 0: what the errors of linear axes make of "
+       "other "
+       "positions of these leaves 1.90 um RMS, 4.30 um at most over all poses; volcal compensate corrects a "
+       "program with the axes where they stand"},
       {{FindingCode::TablesOffIdeal, {{"off", FindingNumber{4.2e-6, "um", 1e-6}}}},
        "between their positions the tables are up to 4.20 um off the ideal compensation: --tolerance takes "
        "as many positions as that needs, --step or --positions as many as they say"},
+      {{FindingCode::RotaryTablesWithoutDirections, {{"rms", FindingNumber{3.54e-6, "um", 1e-6}}}},
+       "tables of rotary axes are the mean of both directions of approach: reversals of these axes leave "
+       "3.54 um "
+       "RMS; neutral-csv and linuxcnc-grid tell directions apart, others need the control's own backlash "
+       "compensation"},
       {{FindingCode::RotaryTablesOffIdeal, {{"off", FindingNumber{12.3e-6, "um", 1e-6}}}},
        "tables of rotary axes are up to 12.30 um off what their types could correct: what changes within one "
        "of "
-       "their steps, as the errors of a worm, needs a finer --rotary-step"},
+       "their steps, as the errors of a worm, needs a finer --rotary-step; what depends on two axes at once "
+       "is "
+       "in grids of rotary axes alone"},
       {{FindingCode::TablesLeaveMore,
         {{"with", FindingNumber{4.26e-6, "um", 1e-6}}, {"without", FindingNumber{3.53e-6, "um", 1e-6}}}},
        "the machine errs by 4.26 um RMS with these tables and by 3.53 without: do not load them; take a "

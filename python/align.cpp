@@ -105,22 +105,23 @@ void define_alignment(py::module_& module) {
       .def("__repr__", [](const AlignedOf& aligned) {
         return text_of("<volcal.Aligned " + aligned.result.result.alignment + ">");
       });
-  module.def("align", &aligned_result, py::arg("result"), py::kw_only(), py::arg("primary") = "",
-             py::arg("secondary") = "", py::arg("origin") = py::dict(), py::arg("reference") = "axis",
-             py::arg("spindle_tilt_urad") = py::none(),
-             "A result in another machine coordinate system (ISO/TR 16907:2015, 7.3 and 10.2), as `volcal "
-             "align`: the "
-             "same numbers to the last bit. Errors are the same up to a rigid motion, and so is their "
-             "covariance.\n\n"
-             "primary: axis whose straight line is the frame's direction; secondary: axis that lies in a "
-             "plane of the "
-             "frame; \"\" = as the result has it. origin: where every error is zero, {\"x_mm\": 500.0}, axes "
-             "not named "
-             "at home. reference: what the frame's direction follows, the primary \"axis\" or the "
-             "\"spindle\", with Z as "
-             "primary axis. spindle_tilt_urad: with \"spindle\", its rotation against the straight line of Z "
-             "about x and "
-             "about y, urad; None = parallel. Raises InputError.");
+  module.def(
+      "align", &aligned_result, py::arg("result"), py::kw_only(), py::arg("primary") = "",
+      py::arg("secondary") = "", py::arg("origin") = py::dict(), py::arg("reference") = "axis",
+      py::arg("spindle_tilt_urad") = py::none(),
+      "A result in another machine coordinate system (ISO/TR 16907:2015, 7.3 and 10.2), as `volcal "
+      "align`: the "
+      "same numbers to the last bit. Errors are the same up to a rigid motion, and so is their "
+      "covariance.\n\n"
+      "primary: axis whose straight line is the frame's direction; secondary: axis that lies in a "
+      "plane of the "
+      "frame; \"\" = as the result has it. origin: where every error motion is zero, {\"x_mm\": 500.0}, axes "
+      "not named "
+      "at home. reference: what the frame's direction follows, the primary \"axis\" or the "
+      "\"spindle\", with Z as "
+      "primary axis. spindle_tilt_urad: with \"spindle\", its rotation against the straight line of Z "
+      "about x and "
+      "about y, urad; None = parallel. Raises InputError.");
 }
 
 }  // namespace volcal::python

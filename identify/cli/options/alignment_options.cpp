@@ -46,7 +46,7 @@ void add_alignment_options(CLI::App& app, AlignmentArguments& arguments) {
   app.add_option("--secondary", arguments.secondary, "axis that lies in a plane of the machine frame")
       ->check(CLI::IsMember(kLinearAxisNames));
   app.add_option("--origin", arguments.origin,
-                 "where every error is zero, X=500,Y=300,Z=0 in mm, axes not named at home");
+                 "where every error motion is zero, X=500,Y=300,Z=0 in mm, axes not named at home");
   app.add_option(
          "--align", arguments.align,
          "what the frame's direction follows: axis = the straight line of the primary axis, spindle = "

@@ -38,10 +38,15 @@ class Leading {
   Screening screening_;
 };
 
-/// A few wild readings would speak for many tests.
-std::vector<bool> flagged(const FitResult& result, const std::vector<std::size_t>& chosen) {
+/// A few wild readings would speak for many tests. Where most of a setup are wild it is the setup.
+std::vector<bool> flagged(const FitResult& result, const std::vector<std::size_t>& chosen,
+                          std::size_t setups) {
+  std::vector<double> excess(setups, 0.0);  // of flagged readings over others
+  for (const std::size_t i : chosen)
+    excess[result.residuals[i].setup] += result.residuals[i].flagged ? 1.0 : -1.0;
   std::vector<bool> flagged;
-  for (const std::size_t i : chosen) flagged.push_back(result.residuals[i].flagged);
+  for (const std::size_t i : chosen)
+    flagged.push_back(result.residuals[i].flagged && excess[result.residuals[i].setup] <= 0.0);
   return flagged;
 }
 
@@ -130,7 +135,7 @@ Screening screen(const Campaign& campaign, const FitResult& result, int threads,
       chosen_of(places(result), campaign.setups.size(), most_observations, most_setups);
   const LinearModel model(campaign, result, chosen);
   const std::vector<NoiseParameters> noise = fitted_noise(result, model.noise_groups());
-  const NoiseData data = without(model.problem().data, flagged(result, chosen));
+  const NoiseData data = without(model.problem().data, flagged(result, chosen, campaign.setups.size()));
   const Projector projector(problem_of(model, campaign, result), data, noise, threads, model.parts());
   const std::vector<Family> families = volcal::families(model);
   Leading leading;

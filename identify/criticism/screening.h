@@ -15,8 +15,8 @@ namespace volcal {
 
 /// Nothing is tested without readings to spare. `result` must come from fit() of this campaign. Noise that is
 /// more than white is not exactly known: a test then counts from a much smaller probability on. Readings that
-/// the outlier test flags are left out. Campaigns of more readings or setups than the tests
-/// need are tested on an even choice of them. The same for any number of threads.
+/// the outlier test flags are left out, unless they are most of their setup. Campaigns of more readings or
+/// setups than the tests need are tested on an even choice of them. The same for any number of threads.
 Screening screen(const Campaign& campaign, const FitResult& result, int threads,
                  std::size_t most_observations = kThresholds.screening_most_observations,
                  std::size_t most_setups = kThresholds.screening_most_setups);

@@ -36,7 +36,7 @@ struct Thresholds {
   double reading_factor_of_best = 0.8;
   /// Standard uncertainties, and share of the factor, by which the others may expect another one.
   double reading_factor_u = 4.0;
-  double reading_factor_share = 0.1;
+  double reading_factor_share = 0.25;
   /// Observations beyond what the parameters take. Fewer: nothing is screened.
   double screening_spare_observations = 5.0;
   /// Observations. More: an even choice of as many is screened. A shift of a twentieth of sigma between two

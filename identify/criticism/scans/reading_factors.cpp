@@ -15,17 +15,9 @@ namespace volcal {
 namespace {
 
 constexpr double kArcsecond = 4.84813681109536;  // urad
-/// A sign; millimetres and micrometres, inches and millimetres, degrees and radians, arc seconds and
-/// microradians.
-constexpr std::array<double, 9> kSlips = {-1.0,
-                                          1e3,
-                                          1e-3,
-                                          25.4,
-                                          1.0 / 25.4,
-                                          1.0 / kRadianPerDegree,
-                                          kRadianPerDegree,
-                                          kArcsecond,
-                                          1.0 / kArcsecond};
+/// A sign; millimetres, inches, degrees and arc seconds in place of micrometres, millimetres, radians and
+/// microradians. None between 0 and 1: readings that the model does not explain ask for such a factor.
+constexpr std::array<double, 5> kSlips = {-1.0, 1e3, 25.4, 1.0 / kRadianPerDegree, kArcsecond};
 
 /// Setups whose readings a slip would change together, and channels of these.
 struct Suspect {

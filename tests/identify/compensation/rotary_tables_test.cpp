@@ -117,7 +117,7 @@ TEST(RotaryTablesOfReversals, SayWhatTheirMeanOfDirectionsLeaves) {
   FunctionSpec turn;
   turn.basis = "fourier";
   turn.degree = 1;
-  turn.coefficients = {0.0, 0.0};
+  turn.coefficients = {0.0, 0.0, 0.0};
   for (const char* symbol : {"ECC", "EAA"}) model.functions[*ErrorSymbol::parse(symbol)] = turn;
   model.effects = {effect_spec("reversal", {{"symbol", std::string("ECC")}, {"amplitude", 30e-6}})};
   const FitResult result = stated_result(machine, model);
@@ -130,7 +130,7 @@ TEST(RotaryTablesOfReversals, SayWhatTheirMeanOfDirectionsLeaves) {
     EXPECT_GT(check.before.rms, 1e-6);
     EXPECT_LT(check.ideal.rms, 0.01e-6);
     EXPECT_NEAR(check.exported.rms, by_direction ? 0.0 : check.before.rms, 0.02 * check.before.rms) << name;
-    EXPECT_NEAR(check.without_directions, check.exported.rms, 0.01e-6) << name;
+    EXPECT_NEAR(check.without_directions, check.exported.rms, 0.05e-6) << name;
   }
 }
 

@@ -14,10 +14,9 @@
 namespace volcal {
 namespace {
 
-constexpr double kArcsecond = 4.84813681109536;  // urad
-/// A sign; millimetres, inches, degrees and arc seconds in place of micrometres, millimetres, radians and
-/// microradians. None between 0 and 1: readings that the model does not explain ask for such a factor.
-constexpr std::array<double, 5> kSlips = {-1.0, 1e3, 25.4, 1.0 / kRadianPerDegree, kArcsecond};
+/// A sign; millimetres in place of micrometres. None between 0 and 1: readings that the model does not
+/// explain ask for such a factor.
+constexpr std::array<double, 2> kSlips = {-1.0, 1e3};
 
 /// Setups whose readings a slip would change together, and channels of these.
 struct Suspect {
@@ -110,16 +109,25 @@ std::optional<ReadingFactor> misread_setup(const LinearModel& model, const Proje
   const std::vector<Suspect> suspects = suspects_of(model.campaign());
   if (suspects.empty()) return std::nullopt;
   const ProjectedColumns projected = projector.project(readings_of(suspects, model));
-  std::optional<ReadingFactor> found;
+  std::vector<std::pair<double, double>> slips;  // factor and gain of every suspect
+  for (Eigen::Index k = 0; k < projected.count(); ++k)
+    slips.push_back(slip_of(projected.score[k], projected.grams.front()(k, k)));
+  const auto leading = std::ranges::max_element(slips, {}, &std::pair<double, double>::second);
+  const auto [factor, gain] = *leading;
+  if (factor == 1.0) return std::nullopt;
+  const Suspect& suspect = suspects[static_cast<std::size_t>(leading - slips.begin())];
+  const Setup& first = model.campaign().setups[suspect.setups.front()];
+  ReadingFactor found{{}, {}, factor, gain};
   for (std::size_t k = 0; k < suspects.size(); ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    const auto [factor, gain] = slip_of(projected.score[column], projected.grams.front()(column, column));
-    if (factor == 1.0 || (found && found->gain >= gain)) continue;
-    found = ReadingFactor{suspects[k].setups, {}, factor, gain};
-    const std::vector<ColumnSchema>& columns = columns_of(model.campaign().setups[found->setups.front()]);
-    for (const int channel : suspects[k].channels)
-      found->columns.push_back(columns[static_cast<std::size_t>(channel)].column);
+    const Setup& other = model.campaign().setups[suspects[k].setups.front()];
+    const bool alike = slips[k].first == factor && suspects[k].channels == suspect.channels &&
+                       other.instrument == first.instrument;
+    if (alike) found.setups.insert(found.setups.end(), suspects[k].setups.begin(), suspects[k].setups.end());
   }
+  std::ranges::sort(found.setups);
+  found.setups.erase(std::ranges::unique(found.setups).begin(), found.setups.end());
+  for (const int channel : suspect.channels)
+    found.columns.push_back(columns_of(first)[static_cast<std::size_t>(channel)].column);
   return found;
 }
 

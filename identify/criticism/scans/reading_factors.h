@@ -1,6 +1,6 @@
 #pragma once
 /// Readings that agree with all others once they are multiplied by a number: a sign that was taken the other
-/// way round, a unit that is not the stated one.
+/// way round, millimetres in place of micrometres.
 ///
 /// Deviations (columns in um or urad) are linear in the errors of the machine and zero without any. With y
 /// those of a setup, or of all setups of an instrument, and zero elsewhere, the campaign with f y in their
@@ -20,12 +20,12 @@ namespace volcal {
 struct ReadingFactor {
   std::vector<std::size_t> setups;
   std::vector<std::string> columns;  ///< of their files, "dx_um"
-  double factor = 1.0;               ///< -1, or of units that are taken for each other
+  double factor = 1.0;               ///< -1 or 1000
   double gain = 0.0;                 ///< by which chi-squared falls with it
 };
 
-/// The most telling one: what it spoils in other setups is no slip of theirs. Nothing where no factor that a
-/// slip would make is near the one that the others expect.
+/// The most telling one, with the setups of its instrument that ask for the same: what it spoils in others is
+/// no slip of theirs. Nothing where no factor that a slip would make is near the one that the others expect.
 std::optional<ReadingFactor> misread_setup(const LinearModel& model, const Projector& projector);
 
 }  // namespace volcal

@@ -107,9 +107,9 @@ const std::vector<WordedFinding>& examples() {
       {{FindingCode::ReadingsMisread,
         {{"setups", std::vector<std::string>{"A"}},
          {"columns", std::vector<std::string>{"deviation_um"}},
-         {"factor", FindingNumber{25.4}}}},
-       "setup \"A\": the other readings expect its deviation_um 25.4 times as large: if so add scale = { "
-       "deviation_um = 25.4 }"},
+         {"factor", FindingNumber{1000.0}}}},
+       "setup \"A\": the other readings expect its deviation_um 1000 times as large: if so add scale = { "
+       "deviation_um = 1000 }"},
       {{FindingCode::ReadingsDuplicated, {{"setup", "X2"}, {"first_setup", "X"}}},
        "setups \"X\" and \"X2\" hold the same readings: they count twice; remove one of them"},
       {{FindingCode::ReadingsDirectionsDerived,

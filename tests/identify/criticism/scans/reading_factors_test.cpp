@@ -64,15 +64,11 @@ TEST(ReadingFactors, NameTheSetupWhoseSignIsReversed) {
   }
 }
 
-TEST(ReadingFactors, NameUnitsOfAllSetupsOfAnInstrument) {
+TEST(ReadingFactors, NameTheSetupOfAThousandthOfTheUnit) {
   Campaign campaign = measured(5);
-  std::vector<std::string> names;
-  for (auto& setup : campaign.setups) {
-    if (setup.instrument != "straightness") continue;
-    multiply(setup, 1e-3);
-    names.push_back(setup.name);
-  }
-  expect_named(misread(campaign), names, 1e3);
+  const auto setup = std::ranges::find(campaign.setups, std::string("straightness"), &Setup::instrument);
+  multiply(*setup, 1e-3);
+  expect_named(misread(campaign), {setup->name}, 1e3);
 }
 
 /// Sphere against nest or nest against sphere.

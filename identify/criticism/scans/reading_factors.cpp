@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -51,11 +52,14 @@ void add_with_single_channels(const std::vector<std::size_t>& setups, const std:
   for (const int channel : channels) suspects.push_back({setups, {channel}});
 }
 
-/// Every setup on its own, and all setups of an instrument.
-std::vector<Suspect> suspects_of(const Campaign& campaign) {
+/// Every setup that has observations on its own, and all of an instrument.
+std::vector<Suspect> suspects_of(const LinearModel& model) {
+  const Campaign& campaign = model.campaign();
+  std::set<std::size_t> present;
+  for (const LinearModel::Observation& place : model.observations()) present.insert(place.setup);
   std::vector<Suspect> suspects;
   std::map<std::pair<std::string, std::size_t>, std::vector<std::size_t>> of_instrument;
-  for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
+  for (const std::size_t s : present) {
     const Setup& setup = campaign.setups[s];
     if (find_instrument(setup.instrument) == nullptr) continue;
     const std::vector<int> channels = channels_of_deviations(setup);
@@ -106,7 +110,7 @@ std::pair<double, double> slip_of(double score, double square) {
 }  // namespace
 
 std::optional<ReadingFactor> misread_setup(const LinearModel& model, const Projector& projector) {
-  const std::vector<Suspect> suspects = suspects_of(model.campaign());
+  const std::vector<Suspect> suspects = suspects_of(model);
   if (suspects.empty()) return std::nullopt;
   const ProjectedColumns projected = projector.project(readings_of(suspects, model));
   std::vector<std::pair<double, double>> slips;  // factor and gain of every suspect

@@ -121,15 +121,14 @@ std::optional<ReadingFactor> misread_setup(const LinearModel& model, const Proje
   if (factor == 1.0) return std::nullopt;
   const Suspect& suspect = suspects[static_cast<std::size_t>(leading - slips.begin())];
   const Setup& first = model.campaign().setups[suspect.setups.front()];
-  ReadingFactor found{{}, {}, factor, gain};
+  std::set<std::size_t> setups;
   for (std::size_t k = 0; k < suspects.size(); ++k) {
     const Setup& other = model.campaign().setups[suspects[k].setups.front()];
     const bool alike = slips[k].first == factor && suspects[k].channels == suspect.channels &&
                        other.instrument == first.instrument;
-    if (alike) found.setups.insert(found.setups.end(), suspects[k].setups.begin(), suspects[k].setups.end());
+    if (alike) setups.insert(suspects[k].setups.begin(), suspects[k].setups.end());
   }
-  std::ranges::sort(found.setups);
-  found.setups.erase(std::ranges::unique(found.setups).begin(), found.setups.end());
+  ReadingFactor found{{setups.begin(), setups.end()}, {}, factor, gain};
   for (const int channel : suspect.channels)
     found.columns.push_back(columns_of(first)[static_cast<std::size_t>(channel)].column);
   return found;

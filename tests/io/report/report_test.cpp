@@ -222,12 +222,14 @@ TEST(ReportSummary, ErrorAndUncertaintyAreOfOneTool) {
   const test::SyntheticFit fit = test::synthetic_fit();
   const ReportOptions options;
   report::PageInput input(fit.result, fit.campaign, options);
-  input.volume.resize(2);
+  input.volume.assign(2, {});
   input.volume[0].tool = "worst";
-  input.volume[0].error_w = {{3e-6, 4e-6, 0.0}};
+  input.volume[0].error_rms = input.volume[0].error_max = 5e-6;
+  input.volume[0].u_rms = 1e-6;
   input.volume[0].u_w = {{1e-6, 0.0, 0.0}};
   input.volume[1].tool = "vaguest";
-  input.volume[1].error_w = {{2e-6, 0.0, 0.0}};
+  input.volume[1].error_rms = input.volume[1].error_max = 2e-6;
+  input.volume[1].u_rms = 9e-6;
   input.volume[1].u_w = {{0.0, 9e-6, 0.0}};
   const report::Json figures = report::summary_page(input).at("figures");
   EXPECT_EQ(figures.at(0).at("value"), "5.0");

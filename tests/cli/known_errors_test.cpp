@@ -208,9 +208,9 @@ TEST_F(KnownErrors, WhatMakesNoSenseIsRefusedWithARemedy) {
     refused("simulate " + path("study.toml") + " --errors " + path(model) + " -o " + path("c"), problem, "");
   write("other.toml",
         testing::content(path("known.toml")) +
-            "[[effects]]\nkind = \"dead-path\"\nsetup = \"P1_short\"\namplitude_um_per_h = 1.0\n");
+            "[[effects]]\nkind = \"dead-path\"\nsetup = \"P9_short\"\namplitude_um_per_h = 1.0\n");
   refused("simulate " + path("study.toml") + " --errors " + path("other.toml") + " -o " + path("c"),
-          "dead-path", "[[hidden]]");
+          "there is no setup \"P9_short\"", "a name that the campaign will have");
   write("cold.toml", "format = \"volcal-study-1\"\nmachine = \"" + testing::kDemoMachine +
                          "\"\n[[measurements]]\nkind = \"point-grid\"\n");
   refused("simulate " + path("cold.toml") + " --errors " + path("known.toml") + " -o " + path("c"), "air",

@@ -237,7 +237,7 @@ struct KnownSide {
 };
 
 std::vector<double> numbers_of(const HiddenSettings& settings, const std::string& key, std::size_t count) {
-  const std::vector<double> numbers = settings.numbers(key);
+  std::vector<double> numbers = settings.numbers(key);
   if (numbers.size() != count)
     settings.fail(
         key + " has " + std::to_string(numbers.size()) + " numbers, " + std::to_string(count) + " are needed",

@@ -45,6 +45,7 @@ std::vector<bool> flagged(const FitResult& result, const std::vector<std::size_t
   for (const std::size_t i : chosen)
     excess[result.residuals[i].setup] += result.residuals[i].flagged ? 1.0 : -1.0;
   std::vector<bool> flagged;
+  flagged.reserve(chosen.size());
   for (const std::size_t i : chosen)
     flagged.push_back(result.residuals[i].flagged && excess[result.residuals[i].setup] <= 0.0);
   return flagged;

@@ -32,8 +32,8 @@ Screening screen_evaluated(const Campaign& campaign, const FitResult& evaluated,
 /// loss has no likelihood, an adjustment that did not converge none to trust.
 void screen_fit(const Campaign& campaign, const FitOptions& options, FitResult& result);
 
-/// A fit that a test contradicts lacks something: status Ok becomes LackOfFit, and a finding says so. So does
-/// one for readings whose sign or unit seems another.
+/// A fit that a test contradicts lacks something: status Ok becomes LackOfFit, and a finding says so. Another
+/// one, the first of all, names setups whose sign or unit seems to be another.
 void judge(const Screening& screening, FitResult& result);
 
 }  // namespace volcal

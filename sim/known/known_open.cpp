@@ -20,9 +20,6 @@
 namespace volcal::sim {
 namespace {
 
-constexpr const char* kWithoutIt =
-    "leave the effect out of a copy of the model, or hide it in the study as a [[hidden]] effect";
-
 /// In the unit that users write.
 StateNumber value_of(const HiddenSettings& settings, const Variable& variable) {
   const double unit = variable.unit().si_per_unit;
@@ -56,8 +53,9 @@ StateNumber value_of(const HiddenSettings& settings, const Variable& variable) {
         return machine.tools[state.tool].offset[k] / unit;
       };
     default:
-      settings.fail("it depends on " + variable.written() + ", which the simulator does not know",
-                    kWithoutIt);
+      settings.fail(
+          "it depends on " + variable.written() + ", which the simulator does not know",
+          "leave the effect out of a copy of the model, or hide it in the study as a [[hidden]] effect");
   }
 }
 

@@ -56,6 +56,26 @@ TEST(Compare, NamesEffectsThatCountAsNothing) {
   EXPECT_THAT(outcome.output, StartsWith(model + " (of no amplitude, counted as nothing: EXX by dir_x)"));
 }
 
+/// An angle that somebody read the other way round: by the fit itself, and against a result that is right.
+TEST(MisreadReadings, AreNamedByFitAndCompare) {
+  const ::volcal::testing::ScratchFolder folder;
+  const std::string campaign = (folder.path() / "mixed/campaign.toml").string();
+  const std::string result = (folder.path() / "result").string();
+  std::filesystem::copy(kExample, folder.path() / "mixed", std::filesystem::copy_options::recursive);
+  ASSERT_EQ(testing::run_program("fit " + campaign + " -o " + result).exit_code, 0);
+  std::string text = content(campaign);
+  const std::string name = "name = \"angXC\"\n";
+  ASSERT_NE(text.find(name), std::string::npos);
+  text.insert(text.find(name) + name.size(), "scale = { angle_urad = -1 }\n");
+  std::ofstream(campaign) << text;
+  const std::string said =
+      "etup \"angXC\": the other readings expect its angle_urad with the opposite sign: if so add scale = { "
+      "angle_urad = -1 }";
+  EXPECT_THAT(compare(campaign + " " + result).output, HasSubstr("Note: s" + said));
+  EXPECT_THAT(testing::run_program("fit " + campaign + " -o " + result + "2").output,
+              HasSubstr("! s" + said));
+}
+
 TEST(Compare, JsonIsOneDocumentAndNothingElse) {
   const testing::ProgramRun outcome = compare(kExample + "campaign.toml nominal nominal --json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;

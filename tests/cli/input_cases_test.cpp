@@ -190,9 +190,10 @@ TEST_F(OneAxis, IsIdentified) {
 }
 
 TEST_F(OneAxis, RemediesSayWhatToSwitchOff) {
-  const auto all = run_program("fit " + path("campaign.toml") + " -o " + path("result"));
+  const auto all = run_program("fit " + path("campaign.toml") + " --verbose -o " + path("result"));
   EXPECT_EQ(all.exit_code, 1) << all.errors;
   EXPECT_THAT(all.output, HasSubstr("[functions] EYX = { basis = \"zero\" }"));
+  EXPECT_THAT(all.output, Not(HasSubstr("station"))) << "there is none";
   write("model.toml", "format = \"volcal-model-1\"\n[functions]\nEC0Y = { basis = \"zero\" }\n");
   const auto squareness = run_program("fit " + path("campaign.toml") + " --model " + path("model.toml") +
                                       " -o " + path("result"));

@@ -11,29 +11,17 @@
 namespace volcal {
 namespace {
 
-/// Poses of all axes, approached from either side as often.
-class ApproachedPoses {
- public:
-  explicit ApproachedPoses(const Machine& machine)
-      : poses_(poses_of_all_axes(machine, kAllAxesPoses)),
-        approaches_(approaches_of_all_axes(machine, kAllAxesPoses)) {}
-
-  template <class CorrectionAt>
-  ErrorLeft left_of(const FiveAxisCompensation& machine, const CorrectionAt& correction_at) const {
-    std::vector<Eigen::Vector3d> places, errors;
-    for (std::size_t i = 0; i < poses_.size(); ++i) {
-      const Correction correction = correction_at(poses_[i], approaches_[i]);
-      places.push_back(machine.nominal_point_w(poses_[i]));
-      errors.push_back(machine.left_by(correction, poses_[i], approaches_[i]).displacement_w);
-    }
-    const VolumetricFigures figures = volumetric_figures(without_rigid_motion(places, errors));
-    return {figures.rms, figures.max};
+template <class CorrectionAt>
+ErrorLeft left_of(const FiveAxisCompensation& machine, const std::vector<ApproachedPose>& poses,
+                  const CorrectionAt& correction_at) {
+  std::vector<Eigen::Vector3d> places, errors;
+  for (const auto& [position, direction] : poses) {
+    places.push_back(machine.nominal_point_w(position));
+    errors.push_back(machine.left_by(correction_at(position, direction), position, direction).displacement_w);
   }
-
- private:
-  std::vector<AxisPosition> poses_;
-  std::vector<ApproachDirection> approaches_;
-};
+  const VolumetricFigures figures = volumetric_figures(without_rigid_motion(places, errors));
+  return {figures.rms, figures.max};
+}
 
 }  // namespace
 
@@ -52,7 +40,7 @@ std::optional<AllAxesCheck> check_all_axes(const FitResult& result, const TableF
   whole.type = CompensationType::volumetric();
   whole.active.reset();
   const Compensation ideal = ideal_compensation(result, whole);
-  const ApproachedPoses poses(machine);
+  const std::vector<ApproachedPose> poses = approached_poses_of_all_axes(machine, kAllAxesPoses);
   const auto none = [](const AxisPosition&, const ApproachDirection&) { return Correction{}; };
   const auto by_tables = [&](const AxisPosition& pose, const ApproachDirection& from) {
     Correction correction = tables.correction(pose, from);
@@ -62,8 +50,8 @@ std::optional<AllAxesCheck> check_all_axes(const FitResult& result, const TableF
   const auto at_rest = [&](const AxisPosition& pose, const ApproachDirection& from) {
     return Correction{ideal.correction(without_rotary_axes(pose), from)};
   };
-  return AllAxesCheck{poses.left_of(of_all, none), poses.left_of(of_all, by_tables),
-                      poses.left_of(of_linear, at_rest)};
+  return AllAxesCheck{left_of(of_all, poses, none), left_of(of_all, poses, by_tables),
+                      left_of(of_linear, poses, at_rest)};
 }
 
 }  // namespace volcal

@@ -16,17 +16,12 @@ namespace {
 
 using LeftAtPoses = std::vector<FiveAxisCompensation::Left>;
 
-/// A pose and how its axes reach it.
-struct Approached {
-  AxisPosition pose;
-  ApproachDirection from{};
-};
-
 template <class CorrectionAt>
-LeftAtPoses left_under(const FiveAxisCompensation& ideal, const std::vector<Approached>& poses,
+LeftAtPoses left_under(const FiveAxisCompensation& ideal, const std::vector<ApproachedPose>& poses,
                        const CorrectionAt& correction_at) {
   LeftAtPoses left;
-  for (const Approached& at : poses) left.push_back(ideal.left_by(correction_at(at), at.pose, at.from));
+  for (const ApproachedPose& at : poses)
+    left.push_back(ideal.left_by(correction_at(at), at.position, at.direction));
   return left;
 }
 
@@ -63,24 +58,13 @@ class RotaryJudgement {
         tables_(tables) {}
 
   const FiveAxisCompensation& ideal() const { return ideal_; }
-  Correction by_tables(const Approached& at) const {
-    Correction correction = tables_.correction(at.pose, at.from);
-    if (has_linear_) correction.linear -= of_linear_.correction(without_rotary_axes(at.pose), at.from);
+  Correction by_tables(const ApproachedPose& at) const {
+    Correction correction = tables_.correction(at.position, at.direction);
+    if (has_linear_)
+      correction.linear -= of_linear_.correction(without_rotary_axes(at.position), at.direction);
     return correction;
   }
-  Correction by_ideal(const Approached& at) const { return ideal_.correction(at.pose, at.from); }
-
-  /// Largest displacement that the tables make otherwise than the ideal, mean of both directions.
-  double deviation(const std::vector<AxisPosition>& poses) const {
-    double largest = 0.0;
-    for (const AxisPosition& pose : poses) {
-      const Approached at{pose};
-      const Eigen::Vector3d moved_w = ideal_.left_by(by_tables(at), pose).displacement_w -
-                                      ideal_.left_by(by_ideal(at), pose).displacement_w;
-      largest = std::max(largest, moved_w.norm());
-    }
-    return largest;
-  }
+  Correction by_ideal(const ApproachedPose& at) const { return ideal_.correction(at.position, at.direction); }
 
  private:
   FiveAxisCompensation ideal_;
@@ -109,22 +93,23 @@ std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const Fi
   if (options.type.rotary().empty()) return std::nullopt;
   const RotaryJudgement judgement(format, result, options, tables);
   const FiveAxisCompensation& ideal = judgement.ideal();
-  const std::vector<AxisPosition> places = poses_of_all_axes(result.machine, kRotaryCheckPoses);
-  const std::vector<ApproachDirection> approaches = approaches_of_all_axes(result.machine, kRotaryCheckPoses);
-  std::vector<Approached> poses, mean_poses;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    poses.push_back({places[i], approaches[i]});
-    mean_poses.push_back({places[i]});
+  const auto none = [](const ApproachedPose&) { return Correction{}; };
+  const auto by_ideal = [&](const ApproachedPose& at) { return judgement.by_ideal(at); };
+  const auto by_tables = [&](const ApproachedPose& at) { return judgement.by_tables(at); };
+  std::vector<ApproachedPose> poses = approached_poses_of_all_axes(result.machine, kRotaryCheckPoses);
+  RotaryCheck check{figures_of(left_under(ideal, poses, none)),
+                    figures_of(left_under(ideal, poses, by_ideal)),
+                    figures_of(left_under(ideal, poses, by_tables))};
+  for (ApproachedPose& pose : poses) pose.direction = {};
+  const LeftAtPoses mean_ideal = left_under(ideal, poses, by_ideal);
+  const LeftAtPoses mean_tables = left_under(ideal, poses, by_tables);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Eigen::Vector3d between_w = mean_tables[i].displacement_w - mean_ideal[i].displacement_w;
+    check.deviation = std::max(check.deviation, between_w.norm());
   }
-  const auto by_tables = [&](const Approached& at) { return judgement.by_tables(at); };
-  const auto figures = [&](const auto& correction_at) {
-    return figures_of(left_under(ideal, poses, correction_at));
-  };
-  const RotaryLeft left = figures(by_tables), of_mean = figures_of(left_under(ideal, mean_poses, by_tables));
-  return RotaryCheck{figures([](const Approached&) { return Correction{}; }),
-                     figures([&](const Approached& at) { return judgement.by_ideal(at); }), left,
-                     judgement.deviation(places),
-                     std::sqrt(std::max(0.0, left.rms * left.rms - of_mean.rms * of_mean.rms))};
+  const double left = check.exported.rms, of_mean = figures_of(mean_tables).rms;
+  check.without_directions = std::sqrt(std::max(0.0, left * left - of_mean * of_mean));
+  return check;
 }
 
 double choose_rotary_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,

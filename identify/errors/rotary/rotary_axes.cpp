@@ -52,17 +52,18 @@ std::vector<AxisPosition> poses_of_all_axes(const Machine& machine, int count) {
   return spread_poses(machine, count);
 }
 
-std::vector<ApproachDirection> approaches_of_all_axes(const Machine& machine, int count) {
-  constexpr std::array<int, kAxisCount> kBases = {29, 31, 37, 41, 43,
-                                                  47, 53, 59, 61};  // none of spread_poses()
-  std::vector<ApproachDirection> approaches(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) {
+std::vector<ApproachedPose> approached_poses_of_all_axes(const Machine& machine, int count) {
+  constexpr std::array<int, kAxisCount> kBases = {29, 31, 37, 41, 43, 47, 53, 59, 61};  // not of poses
+  std::vector<ApproachedPose> poses;
+  for (const AxisPosition& position : poses_of_all_axes(machine, count)) {
+    const int number = static_cast<int>(poses.size()) + 1;
+    ApproachedPose& pose = poses.emplace_back(ApproachedPose{position});
     for (const Axis& axis : machine.axes) {
       const std::size_t a = index_of(axis.name);
-      approaches[static_cast<std::size_t>(i)][a] = radical_inverse(i + 1, kBases[a]) < 0.5 ? -1 : 1;
+      pose.direction[a] = radical_inverse(number, kBases[a]) < 0.5 ? -1 : 1;
     }
   }
-  return approaches;
+  return poses;
 }
 
 AxisLineErrors line_at_machine_zero(const Machine& machine, const PoseErrors<double>& errors, AxisName axis) {

@@ -18,8 +18,13 @@ void require_identified_rotary_axes(const FitResult& result, const AxisPosition&
 
 /// Poses spread evenly over the travel of all axes, of a rotary axis over a turn at most.
 std::vector<AxisPosition> poses_of_all_axes(const Machine& machine, int count);
-/// How all axes reach as many poses: each from either side as often, whatever its place.
-std::vector<ApproachDirection> approaches_of_all_axes(const Machine& machine, int count);
+/// A pose and how its axes reach it.
+struct ApproachedPose {
+  AxisPosition position{};
+  ApproachDirection direction{};
+};
+/// The same poses, every axis reached from either side as often, whatever its place.
+std::vector<ApproachedPose> approached_poses_of_all_axes(const Machine& machine, int count);
 
 /// Errors of an axis average line in the machine frame, all axes at 0.
 struct AxisLineErrors {

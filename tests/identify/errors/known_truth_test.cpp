@@ -20,8 +20,10 @@
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
+#include "volcal/model/instruments/registry.h"
 #include "volcal/sim/known/known_errors.h"
 #include "volcal/sim/machine/reference_machines.h"
+#include "volcal/sim/measurement/instruments.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {
@@ -258,6 +260,24 @@ TEST(KnownTruth, TheSimulatorKnowsEveryEffectOfTheModel) {
     EXPECT_EQ(std::ranges::count(known, kind->schema().kind), 1) << kind->schema().kind;
 }
 
+/// What an effect of a column acts on.
+TEST(KnownTruth, ColumnsOfTheSimulatorAreThoseOfTheInstruments) {
+  for (const Instrument* instrument : instruments()) {
+    const InstrumentSchema& schema = instrument->schema();
+    sim::SetupPlan plan;
+    plan.instrument = schema.name;
+    EXPECT_NE(sim::column_read(plan, 0), "") << schema.name;
+    for (std::size_t set = 0; set < schema.column_sets.size(); ++set) {
+      plan.column_set = set;
+      for (std::size_t channel = 0; channel < schema.column_sets[set].size(); ++channel) {
+        const std::string column = sim::column_read(plan, channel);
+        if (column.empty()) continue;
+        EXPECT_EQ(column, schema.column_sets[set][channel].column) << schema.name;
+      }
+    }
+  }
+}
+
 TEST(KnownTruth, EffectsOfLasersLevelsAndRunsAreThoseOfTheModel) {
   const Machine machine = machine_with_homes();
   const std::vector<sim::Measurement> measurements = further_measurements();
@@ -367,6 +387,7 @@ TEST(KnownTruth, EveryVariantOfAnEffectIsThatOfTheModel) {
   }
   const Campaign campaign = measured_without_noise(machine, without, measurements);
   std::set<std::string> seen;
+  int held = 0;
   for (const EffectKind* kind : effect_kinds()) {
     for (const EffectSpec& example : kind->examples(campaign)) {
       if (!seen.insert(variant_of(example)).second) continue;
@@ -375,11 +396,12 @@ TEST(KnownTruth, EveryVariantOfAnEffectIsThatOfTheModel) {
       ModelSpec with = without;
       with.effects = {*effect};
       const Campaign measured = measured_without_noise(machine, with, measurements);
+      ++held;
       const double overrun = kind->schema().kind == "pre-travel" ? 0.1 * 12e-6 : 0.0;
       EXPECT_LT(largest_residual(measured, with), kFirstOrder + overrun) << variant_of(*effect);
     }
   }
-  EXPECT_GT(seen.size(), effect_kinds().size());
+  EXPECT_GE(held, 90) << "of " << seen.size() << " variants; readings hardly see the others";
 }
 
 /// Single contacts on a sphere of a trunnion.

@@ -34,6 +34,6 @@ export function renderSummary(body, data) {
   body.append(
     el('table', { class: 'facts' }, el('tbody', {}, data.facts.map(([name, value]) =>
       el('tr', {}, [el('th', { scope: 'row' }, name), el('td', {}, name === 'Command' ? value : value.replace(/(^|\s)-(?=\d)/g, '$1−'))])))),
-    note('Volumetric error: position of the functional point, actual minus nominal without its best rigid motion, on a grid of the work volume, for the tool with the largest error. Compensation is its negative.'),
+    note('Volumetric error: position of the functional point, actual minus nominal without its best rigid motion, at places all over the work volume from both directions of approach, for the tool with the largest error; largest uncertainty: of the places drawn below. Compensation is its negative.'),
   );
 }

@@ -75,14 +75,14 @@ class Bench {
         projection_(repeated_, set_),
         solvers_(repeated_),
         left_(Eigen::MatrixXd::Random(repeated_.linear_root().cols(), kLinearBatch)),
-        right_(Eigen::MatrixXd::Random(repeated_.linear_root().cols(), columns())) {}
+        right_(Eigen::MatrixXd::Random(repeated_.linear_root().cols(), projection_.quantities())) {}
 
   void round(Rates& rates) {
     rates.linear.push_back(rate(kLinearBatches, kLinearBatch, [&](std::size_t batch) {
       projection_.of_linear_draws(1, batch * kLinearBatch, kLinearBatch);
     }));
     rates.product.push_back(rate(kLinearBatches, kLinearBatch, [&](std::size_t) {
-      Eigen::MatrixXd product = Eigen::MatrixXd::Zero(kLinearBatch, columns());
+      Eigen::MatrixXd product = Eigen::MatrixXd::Zero(kLinearBatch, projection_.quantities());
       add_transposed_product(left_, right_, product);
     }));
     std::vector<SolverTally> tallies(kChordBatches);
@@ -109,7 +109,6 @@ class Bench {
     return {{"readings", repeated_.observations()},
             {"parameters", repeated_.parameters()},
             {"quantities", projection_.quantities()},
-            {"components", columns() - projection_.quantities()},
             {"threads", threads_},
             {"blas", blas_core()},
             {"linear_per_s", rates.linear},
@@ -122,11 +121,6 @@ class Bench {
   }
 
  private:
-  Eigen::Index columns() const {
-    Eigen::Index count = set_.rows.rows();
-    for (const QuantitySet::Volume& volume : set_.volumes) count += volume.rows.rows();
-    return count;
-  }
   template <class Work>
   double rate(std::size_t batches, Eigen::Index batch, const Work& work) const {
     const double time = seconds([&] { run_parallel(batches, threads_, work); });

@@ -106,6 +106,7 @@ Conditions stated_conditions(const FitResult& result, const std::map<std::string
       throw InputError({}, "--conditions " + name + ": the result does not know this condition",
                        recorded_names(result));
     }
+    conditions.stated.push_back(*variable);
   }
   return conditions;
 }
@@ -130,23 +131,27 @@ std::string_view reference_temperature_origin(const FitResult& result) {
 std::vector<StatedCondition> list_conditions(const FitResult& result, const Conditions& conditions) {
   const Conditions usual = default_conditions(result);
   const RecordedConditions& recorded = result.conditions;
-  const Variable feed{Variable::Kind::Feed};
+  const auto is_stated = [&](const Variable& variable) {
+    return std::ranges::find(conditions.stated, variable) != conditions.stated.end();
+  };
   std::vector<StatedCondition> list;
   for (const auto& [channel, value] : conditions.temperature_degC) {
     const auto otherwise = usual.temperature_degC.find(channel);
-    const bool stated = otherwise == usual.temperature_degC.end() || otherwise->second != value;
+    const bool stated = otherwise == usual.temperature_degC.end() || otherwise->second != value ||
+                        is_stated(temperature_of(channel));
     list.push_back({temperature_of(channel), value,
                     stated                             ? kAsStated
                     : knows_expansion(result, channel) ? kReferenceTemperature
                                                        : origin_of(recorded.temperature_degC.at(channel))});
   }
-  if (conditions.time)
-    list.push_back({{Variable::Kind::Time},
-                    *conditions.time,
-                    conditions.time == usual.time ? origin_of(*recorded.time) : kAsStated});
-  if (conditions.feed)
-    list.push_back({feed, *conditions.feed / feed.unit().si_per_unit,
-                    conditions.feed == usual.feed ? origin_of(*recorded.feed) : kAsStated});
+  const auto add = [&](const Variable& variable, double value, bool usual_value, const RecordedRange& range) {
+    list.push_back({variable, value, usual_value && !is_stated(variable) ? origin_of(range) : kAsStated});
+  };
+  const Variable time{Variable::Kind::Time}, feed{Variable::Kind::Feed};
+  if (conditions.time) add(time, *conditions.time, conditions.time == usual.time, *recorded.time);
+  if (conditions.feed) {
+    add(feed, *conditions.feed / feed.unit().si_per_unit, conditions.feed == usual.feed, *recorded.feed);
+  }
   return list;
 }
 

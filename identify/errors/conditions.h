@@ -17,6 +17,7 @@ struct Conditions {
   std::map<std::string, double> temperature_degC;  ///< by channel
   std::optional<double> time;                      ///< s, campaign clock
   std::optional<double> feed;                      ///< m/s
+  std::vector<Variable> stated;                    ///< by the user, one that equals the default among them
 };
 
 /// 20 degC for every channel whose expansion of a scale the model knows, the campaign's mean for every other;

@@ -1,6 +1,10 @@
 #pragma once
 /// From deviations of the parameters to standardised deviations t = (y - y^) / u of the quantities, for
 /// batches of draws: one matrix product, then the sizes of the volumes, which are not linear.
+///
+/// Linear draws are drawn among the quantities: with W W^T = C of the parameters and A the projection, A^T W
+/// n of standard normal n and R^T n of the triangular factor W^T A = Q R are distributed alike, as Q^T n is
+/// standard normal (Golub and Van Loan 2013, 5.2). R has no more rows than there are quantities.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -24,20 +28,24 @@ class DrawProjection {
   const Eigen::ArrayXd& bias_linear() const { return bias_linear_; }
 
   /// t, draws x quantities, of deviations z - z^, parameters x draws.
-  Eigen::ArrayXXd of(const Eigen::MatrixXd& deviations) const;
-  /// t of draws among the parameters (RepeatedCampaign::draw_linear), first ... first + count.
-  Eigen::ArrayXXd of_linear_draws(std::uint64_t seed, std::uint64_t first, Eigen::Index count) const;
+  Eigen::MatrixXd of(const Eigen::MatrixXd& deviations) const;
+  /// R: what linear draws are made by.
+  const Eigen::MatrixXd& linear_factor() const { return of_normals_; }
+  /// t of linear draws (RepeatedCampaign::draw_linear), first ... first + count.
+  Eigen::MatrixXd of_linear_draws(std::uint64_t seed, std::uint64_t first, Eigen::Index count) const;
 
  private:
-  Eigen::ArrayXXd finished(Eigen::MatrixXd product) const;
+  void set_unit();
+  /// Sets the sizes of the volumes in t.
+  void add_sizes(Eigen::MatrixXd& t) const;
 
   const RepeatedCampaign& campaign_;
   const QuantitySet& set_;
   Eigen::ArrayXd u_linear_;
   Eigen::ArrayXd bias_linear_;
   Eigen::ArrayXd unit_;
-  Eigen::MatrixXd projection_;     ///< parameters x (quantities, vectors of the volumes in m)
-  Eigen::MatrixXd of_normals_;     ///< linear root^T projection
+  Eigen::MatrixXd projection_;     ///< parameters x quantities
+  Eigen::MatrixXd of_normals_;     ///< upper factor of linear root^T projection
   Eigen::MatrixXd of_amplitudes_;  ///< response^T projection
   Eigen::RowVectorXd offset_;      ///< bias^T projection
 };

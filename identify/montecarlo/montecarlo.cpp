@@ -190,7 +190,7 @@ class MonteCarloStudy::Work {
     add(repeated_.identified(), hash);
     add(repeated_.predicted(), hash);
     add(repeated_.gain(), hash);
-    add(repeated_.linear_root(), hash);
+    add(projection_.linear_factor(), hash);
     add(repeated_.response(), hash);
     add(projection_.unit().matrix(), hash);
     hash.add(options_.seed);
@@ -268,11 +268,11 @@ class MonteCarloStudy::Work {
       const std::size_t batch = rank() + k * ranks();
       const std::uint64_t from = batch * of_batch;
       SolverTally tally;
-      const Eigen::ArrayXXd t =
+      const Eigen::MatrixXd t =
           draw_batch(first + from, static_cast<Eigen::Index>(std::min(of_batch, count - from)), tally);
-      share.moments[batch] = Moments::of(t);
+      share.moments[batch] = Moments::of(t.array());
       auto counts = empty_histograms();
-      counts->add(t);
+      counts->add(t.array());
       histograms_.give_back(std::move(counts));
       const std::lock_guard lock(counting);
       share.tally.add(tally);
@@ -317,7 +317,7 @@ class MonteCarloStudy::Work {
                      "start all ranks with the same program and files, on processors of one kind");
   }
 
-  Eigen::ArrayXXd draw_batch(std::uint64_t first, Eigen::Index count, SolverTally& tally) {
+  Eigen::MatrixXd draw_batch(std::uint64_t first, Eigen::Index count, SolverTally& tally) {
     if (path_ == DrawPath::Linear) return projection_.of_linear_draws(options_.seed, first, count);
     const std::vector<CampaignDraw> draws = draws_from(first, count);
     Eigen::MatrixXd deviations =
@@ -356,16 +356,16 @@ class MonteCarloStudy::Work {
     for (const SolverTally& tally : tallies) refit_tally.add(tally);
     check_.refit_seconds = seconds_since(start) / count * std::min(threads_, count);
     check_.not_converged = static_cast<int>(refit_tally.not_converged);
-    const Eigen::ArrayXXd t = projection_.of(refits);
+    const Eigen::MatrixXd t = projection_.of(refits);
     compare(projection_.of(linear) - t, check_.linear);
     compare(projection_.of(chord) - t, check_.chord);
   }
 
-  void compare(const Eigen::ArrayXXd& difference, PathCheck& check) const {
+  void compare(const Eigen::MatrixXd& difference, PathCheck& check) const {
     check.draws = static_cast<int>(difference.rows());
     for (Eigen::Index i = 0; i < difference.cols(); ++i) {
       const Quantity& quantity = set_.items[static_cast<std::size_t>(i)];
-      const double largest = difference.col(i).abs().maxCoeff() * projection_.unit()[i];
+      const double largest = difference.col(i).cwiseAbs().maxCoeff() * projection_.unit()[i];
       if (quantity.unit == "um" || quantity.unit == "mm")
         check.largest_length = std::max(check.largest_length, largest);
       if (quantity.unit == "urad") check.largest_angle = std::max(check.largest_angle, largest);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/result/surface_values.h"
@@ -112,8 +113,8 @@ Quantity of_volume(QuantityKind kind, const std::string& name, const std::string
       .estimate = estimate};
 }
 
-/// Derivatives of the root mean square and of the largest length about the estimate.
-void add_sizes(QuantitySet::Volume& volume, QuantityList& list) {
+/// Derivatives of the root mean square and of the largest length about the estimate. `rows`: of ex, ey, ez.
+void add_sizes(const Eigen::MatrixXd& rows, QuantitySet::Volume& volume, QuantityList& list) {
   const VolumeSizes sizes = volume_sizes(volume.error);
   const Eigen::Index points = volume.error.size() / 3;
   Eigen::Index furthest = 0;
@@ -123,49 +124,43 @@ void add_sizes(QuantitySet::Volume& volume, QuantityList& list) {
   const auto share = [](double size) { return size > 0.0 ? 1.0 / size : 0.0; };
   volume.rms = list.items.size();
   list.add(of_volume(QuantityKind::VolumetricRms, "rms", volume.tool, sizes.rms),
-           volume.rows.transpose() * volume.error * (share(sizes.rms) / static_cast<double>(points)));
+           rows.transpose() * volume.error * (share(sizes.rms) / static_cast<double>(points)));
   volume.largest = list.items.size();
   list.add(of_volume(QuantityKind::VolumetricMax, "max", volume.tool, sizes.largest),
-           volume.rows.middleRows<3>(3 * furthest).transpose() * volume.error.segment<3>(3 * furthest) *
+           rows.middleRows<3>(3 * furthest).transpose() * volume.error.segment<3>(3 * furthest) *
                share(sizes.largest));
 }
 
-QuantitySet::Volume volume_of(const FitResult& result, const Tool& tool, const Conditions& conditions,
-                              int per_axis) {
+/// Nothing where nothing in the volume varies.
+std::optional<QuantitySet::Volume> added_volume(const FitResult& result, const Tool& tool,
+                                                const Conditions& conditions, int per_axis,
+                                                QuantityList& list) {
   const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
-  QuantitySet::Volume volume{
-      .tool = tool.name,
-      .rows = Eigen::MatrixXd(3 * static_cast<Eigen::Index>(positions.size()), result.layout.size),
-      .error = Eigen::VectorXd(3 * static_cast<Eigen::Index>(positions.size()))};
+  const auto size = 3 * static_cast<Eigen::Index>(positions.size());
+  QuantitySet::Volume volume{.tool = tool.name, .error = Eigen::VectorXd(size), .components = {}};
+  Eigen::MatrixXd rows(size, result.layout.size);
   const ErrorField field(result, tool, conditions);
+  const std::size_t before = list.items.size();
   Eigen::Index row = 0;
   for (const AxisPosition& position : positions) {
-    volume.rows.middleRows<3>(row) = field.unheld_rows(position).topRows<3>();
+    rows.middleRows<3>(row) = field.unheld_rows(position).topRows<3>();
     volume.error.segment<3>(row) = field.at(position).head<3>();
-    row += 3;
-  }
-  return volume;
-}
-
-/// False where nothing in the volume varies.
-bool add_volume(const FitResult& result, QuantitySet::Volume& volume, int per_axis, QuantityList& list) {
-  const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
-  const std::size_t before = list.items.size();
-  for (std::size_t point = 0; point < positions.size(); ++point) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto row = static_cast<Eigen::Index>(3 * point + k);
-      const Eigen::VectorXd derivatives = volume.rows.row(row);
+    for (const char* name : kVectorNames) {
+      const Eigen::VectorXd derivatives = rows.row(row);
       const double variance = derivatives.dot(result.covariance * derivatives);
-      if (!(variance > 1e-24)) continue;  // under 1 pm: at the point where the datum makes it zero
-      Quantity quantity =
-          of_volume(QuantityKind::VolumetricError, kVectorNames[k], volume.tool, volume.error[row]);
-      quantity.at = positions[point];
-      list.add(std::move(quantity), derivatives);
+      const bool varies = variance > 1e-24;  // above 1 pm
+      volume.components.push_back(varies ? std::optional(list.items.size()) : std::nullopt);
+      if (varies) {
+        Quantity quantity = of_volume(QuantityKind::VolumetricError, name, volume.tool, volume.error[row]);
+        quantity.at = position;
+        list.add(std::move(quantity), derivatives);
+      }
+      ++row;
     }
   }
-  if (list.items.size() == before) return false;
-  add_sizes(volume, list);
-  return true;
+  if (list.items.size() == before) return std::nullopt;
+  add_sizes(rows, volume, list);
+  return volume;
 }
 
 }  // namespace
@@ -221,8 +216,8 @@ QuantitySet quantities_of(const FitResult& result, int grid_per_axis,
   QuantitySet set;
   for (const Tool& tool : result.machine.tools) {
     if (grid_per_axis <= 0) break;
-    set.volumes.push_back(volume_of(result, tool, conditions, grid_per_axis));
-    if (!add_volume(result, set.volumes.back(), grid_per_axis, list)) set.volumes.pop_back();
+    if (auto volume = added_volume(result, tool, conditions, grid_per_axis, list))
+      set.volumes.push_back(std::move(*volume));
   }
   set.items = std::move(list.items);
   set.rows = list.rows();

@@ -39,12 +39,13 @@ struct QuantitySet {
   std::vector<Quantity> items;
   /// Derivatives to the parameters, quantities x layout.size; of rms and max about the estimate.
   Eigen::MatrixXd rows;
-  /// The volume of one tool: ex, ey, ez of its points are the vectors error + (rows[first ...] deviation).
+  /// The volume of one tool: ex, ey, ez of its points.
   struct Volume {
     std::string tool;
-    Eigen::MatrixXd rows;   ///< 3 points x layout.size
-    Eigen::VectorXd error;  ///< 3 points, m
-    std::size_t rms = 0;    ///< index of the quantity
+    Eigen::VectorXd error;  ///< of the fit, 3 points, m
+    /// Which quantity each of them is; none where it does not vary, which is at points that the datum holds.
+    std::vector<std::optional<std::size_t>> components;
+    std::size_t rms = 0;  ///< index of the quantity
     std::size_t largest = 0;
   };
   std::vector<Volume> volumes;

@@ -105,9 +105,9 @@ class RepeatedCampaign {
   /// Covariance of (2), all sources.
   Eigen::MatrixXd linear_covariance() const;
 
-  /// Deviations z - z^ by (2), drawn among the parameters, one column per draw from `first`: J^T Sigma^-1 e
-  /// is exactly N(0, J^T Sigma^-1 J), so that no reading is drawn. Not the draws of the same number of
-  /// draw().
+  /// For deviations by (2) that are drawn without their readings, J^T Sigma^-1 e being exactly
+  /// N(0, J^T Sigma^-1 J): standard normal numbers, as many as there are rows, and amplitudes of response(),
+  /// one column per draw from `first`. Not the draws of the same number of draw().
   void draw_linear(std::uint64_t seed, std::uint64_t first, Eigen::Ref<Eigen::MatrixXd> normals,
                    Eigen::Ref<Eigen::MatrixXd> amplitudes) const;
 

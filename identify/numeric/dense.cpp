@@ -22,6 +22,8 @@ void dsyevd_(const char* jobz, const char* uplo, const int* n, double* a, const 
 void dgelsy_(const int* m, const int* n, const int* nrhs, double* a, const int* lda, double* b,
              const int* ldb, int* jpvt, const double* rcond, int* rank, double* work, const int* lwork,
              int* info);
+void dgeqrf_(const int* m, const int* n, double* a, const int* lda, double* tau, double* work,
+             const int* lwork, int* info);
 void dpotrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda, double* b,
              const int* ldb, int* info);
 void dsyrk_(const char* uplo, const char* trans, const int* n, const int* k, const double* alpha,
@@ -246,14 +248,52 @@ Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& a,
   return c;
 }
 
-void add_transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
-                            const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::MatrixXd& c) {
+namespace {
+
+/// `c` += A^T B, dense columns of A's width.
+void add_transposed_product_to(double* c, const Eigen::Ref<const Eigen::MatrixXd>& a,
+                               const Eigen::Ref<const Eigen::MatrixXd>& b) {
   const double one = 1.0;
   const int m = static_cast<int>(a.cols()), n = static_cast<int>(b.cols()), k = static_cast<int>(a.rows());
   const int lda = static_cast<int>(a.outerStride()), ldb = static_cast<int>(b.outerStride());
   if (m == 0 || n == 0 || k == 0) return;
   const BlasCall call;
-  dgemm_("T", "N", &m, &n, &k, &one, a.data(), &lda, b.data(), &ldb, &one, c.data(), &m);
+  dgemm_("T", "N", &m, &n, &k, &one, a.data(), &lda, b.data(), &ldb, &one, c, &m);
+}
+
+}  // namespace
+
+void add_transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
+                            const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::MatrixXd& c) {
+  add_transposed_product_to(c.data(), a, b);
+}
+
+Eigen::MatrixXd upper_factor(Eigen::MatrixXd a) {
+  use_single_threaded_blas();
+  const int m = static_cast<int>(a.rows()), n = static_cast<int>(a.cols());
+  const Eigen::Index height = std::min(a.rows(), a.cols());
+  if (height == 0) return a.topRows(height);
+  Eigen::VectorXd reflectors(height);
+  int info = 0, query = -1;
+  double size = 0.0;
+  const BlasCall call;
+  dgeqrf_(&m, &n, a.data(), &m, reflectors.data(), &size, &query, &info);
+  const int work_size = static_cast<int>(size);
+  Eigen::VectorXd work(work_size);
+  dgeqrf_(&m, &n, a.data(), &m, reflectors.data(), work.data(), &work_size, &info);
+  return a.topRows(height).triangularView<Eigen::Upper>();
+}
+
+void add_transposed_product_upper(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& r,
+                                  Eigen::MatrixXd& c) {
+  constexpr Eigen::Index kTogether = 48;  // columns that are taken to be as long as the last of them
+  for (Eigen::Index column = 0; column < r.cols();) {
+    const Eigen::Index left = r.cols() - column;
+    const Eigen::Index count = column >= r.rows() ? left : std::min(kTogether, left);
+    const Eigen::Index height = std::min(r.rows(), column + count);
+    add_transposed_product_to(c.col(column).data(), a.topRows(height), r.block(0, column, height, count));
+    column += count;
+  }
 }
 
 void add_gram_upper(const Eigen::Ref<const Eigen::MatrixXd>& a, double factor, Eigen::MatrixXd& c) {

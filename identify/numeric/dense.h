@@ -58,6 +58,11 @@ Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& a,
 /// C += A^T B.
 void add_transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
                             const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::MatrixXd& c);
+/// R of A = Q R, min(rows, columns) x columns, zero below its diagonal: R^T R = A^T A.
+Eigen::MatrixXd upper_factor(Eigen::MatrixXd a);
+/// C += A^T R, R of upper_factor(): what is below its diagonal is left out.
+void add_transposed_product_upper(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::MatrixXd& r,
+                                  Eigen::MatrixXd& c);
 /// upper(C) += factor A^T A.
 void add_gram_upper(const Eigen::Ref<const Eigen::MatrixXd>& a, double factor, Eigen::MatrixXd& c);
 /// B = L^-1 B, L lower triangular.

@@ -49,9 +49,10 @@ std::string columns_unused(const Finding& finding) {
 std::string rows_repeated(const Finding& finding) {
   return in_setup(finding) +
          fmt::format(
-             "{} of {} rows repeat an earlier row in every column, line {} that of line {}: each counts as a "
+             "{} of {} rows repeat an earlier row in {}, line {} that of line {}: each counts as a "
              "measurement of its own; remove the copies",
-             finding.count("repeats"), finding.count("rows"), finding.count("line"),
+             finding.count("repeats"), finding.count("rows"),
+             finding.flag("at_other_times") ? "all but its time" : "every column", finding.count("line"),
              finding.count("first_line"));
 }
 

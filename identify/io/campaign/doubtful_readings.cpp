@@ -17,6 +17,8 @@ namespace {
 
 constexpr std::size_t kFewestRepeats = 5;
 constexpr double kShareOfRepeats = 0.3;
+constexpr double kFineDigits = 0.01;  // of the stated noise: equal by chance is one of 300 readings, or fewer
+constexpr double kRoundingOfDigits = 1e-3;
 constexpr std::size_t kFewestMoves = 5;
 constexpr double kShareAgainstOrder = 0.8;
 constexpr double kSlowestStep_s = 1000.0;  // median between readings, over more than a day
@@ -25,14 +27,29 @@ constexpr double kFastest = 5.0;  // m/s between readings
 
 std::int64_t count(std::size_t number) { return static_cast<std::int64_t>(number); }
 
-/// Everything that was read of a row.
-std::vector<double> values_of_row(const Readings& readings, std::size_t row) {
+/// Whether most readings have digits below a hundredth of their stated noise, so that those that agree to the
+/// last digit can hardly be measurements of their own.
+bool has_fine_digits(const Setup& setup) {
+  const double noise = setup.noise.number("constant").value_or(0.0);
+  if (!(noise > 0.0) || setup.readings.value.empty()) return false;
+  const double digit = std::pow(10.0, std::floor(std::log10(kFineDigits * noise)));
+  const std::vector<double>& values = setup.readings.value.front();
+  const auto fine = std::ranges::count_if(values, [&](double value) {
+    const double digits = value / digit;
+    return std::abs(digits - std::round(digits)) > kRoundingOfDigits;
+  });
+  return 2 * static_cast<std::size_t>(fine) > values.size();
+}
+
+/// What was read of a row; `of_time`: with its time, line, run and direction of approach.
+std::vector<double> values_of_row(const Readings& readings, std::size_t row, bool of_time) {
   std::vector<double> all;
   for (const auto& column : readings.position) {
     if (!column.empty()) all.push_back(column[row]);
   }
   for (const auto& column : readings.value) all.push_back(column[row]);
   for (const auto& column : readings.given) all.push_back(column[row]);
+  if (!of_time) return all;
   for (const auto& column : readings.direction) {
     if (!column.empty()) all.push_back(column[row]);
   }
@@ -42,24 +59,44 @@ std::vector<double> values_of_row(const Readings& readings, std::size_t row) {
   return all;
 }
 
-/// A time is read once: a row that repeats it is a copy. Without times equal readings may be chance.
-std::optional<Finding> repeated_rows(const Readings& readings) {
-  std::map<std::vector<double>, std::size_t> first;
-  std::size_t repeats = 0;
-  std::pair<std::size_t, std::size_t> example;
-  for (std::size_t row = 0; row < readings.size(); ++row) {
-    const auto [known, fresh] = first.emplace(values_of_row(readings, row), row);
-    if (fresh) continue;
-    if (repeats++ == 0) example = {known->second, row};
+struct Repeats {
+  std::size_t count = 0;
+  std::size_t first = 0, second = 0;  ///< an example
+  bool many(std::size_t rows) const {
+    return count >= kFewestRepeats &&
+           static_cast<double>(count) >= kShareOfRepeats * static_cast<double>(rows);
   }
-  const bool many = repeats >= kFewestRepeats &&
-                    static_cast<double>(repeats) >= kShareOfRepeats * static_cast<double>(readings.size());
-  if (!many && (repeats == 0 || readings.time.empty())) return std::nullopt;
+};
+
+Repeats repeats_in(const Readings& readings, bool of_time) {
+  std::map<std::vector<double>, std::size_t> first;
+  Repeats repeats;
+  for (std::size_t row = 0; row < readings.size(); ++row) {
+    const auto [known, fresh] = first.emplace(values_of_row(readings, row, of_time), row);
+    if (fresh) continue;
+    if (repeats.count++ == 0) repeats = {1, known->second, row};
+  }
+  return repeats;
+}
+
+/// A time is read once: a row that repeats it is a copy. Without times equal readings may be chance, and so
+/// are a few with other times.
+std::optional<Finding> repeated_rows(const Setup& setup) {
+  const Readings& readings = setup.readings;
+  Repeats repeats = repeats_in(readings, true);
+  bool at_other_times = false;
+  if (!repeats.many(readings.size()) && (repeats.count == 0 || readings.time.empty())) {
+    if (!has_fine_digits(setup)) return std::nullopt;
+    repeats = repeats_in(readings, false);
+    at_other_times = true;
+    if (!repeats.many(readings.size())) return std::nullopt;
+  }
   return Finding{FindingCode::ReadingsRowsRepeated,
-                 {{"repeats", count(repeats)},
+                 {{"repeats", count(repeats.count)},
                   {"rows", count(readings.size())},
-                  {"line", readings.source_line[example.second]},
-                  {"first_line", readings.source_line[example.first]}}};
+                  {"line", readings.source_line[repeats.second]},
+                  {"first_line", readings.source_line[repeats.first]},
+                  {"at_other_times", at_other_times}}};
 }
 
 /// Stated directions against the moves between neighbouring readings of a pass.
@@ -132,7 +169,7 @@ std::vector<Finding> doubts_of(const Setup& setup, const Machine& machine) {
   const auto add = [&](std::optional<Finding> doubt) {
     if (doubt) doubts.push_back(*std::move(doubt));
   };
-  add(repeated_rows(setup.readings));
+  add(repeated_rows(setup));
   for (const Axis& axis : machine.axes) add(against_order(setup.readings, axis.name));
   add(doubtful_time(setup.readings));
   add(doubtful_angles(setup, machine));
@@ -143,7 +180,8 @@ bool same_readings(const Setup& one, const Setup& other) {
   const Readings &a = one.readings, &b = other.readings;
   return one.instrument == other.instrument && one.tool == other.tool && a.size() > 1 &&
          a.column_set == b.column_set && a.value == b.value && a.given == b.given &&
-         a.position == b.position && a.time == b.time;
+         a.position == b.position &&
+         (a.time == b.time || (a.size() >= kFewestRepeats && has_fine_digits(one)));
 }
 
 }  // namespace volcal

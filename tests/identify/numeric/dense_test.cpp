@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace volcal {
 namespace {
@@ -29,6 +30,39 @@ TEST(Dense, EigenvaluesOfWhatIsNotFiniteAreNotNumbers) {
   a(0, 1) = a(1, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(eigenvalues(a).array().isNaN().all());
   EXPECT_TRUE(eigen_decomposition(a).vectors.array().isNaN().all());
+}
+
+TEST(Dense, UpperFactorOfThreeFourFive) {
+  Eigen::MatrixXd a(2, 2);
+  a << 3.0, 1.0, 4.0, 2.0;  // lengths 5 and sqrt 5, product 11
+  const Eigen::MatrixXd r = upper_factor(a);
+  EXPECT_NEAR(std::abs(r(0, 0)), 5.0, kDenseRounding);
+  EXPECT_NEAR(r(0, 0) * r(0, 1), 11.0, kDenseRounding);
+  EXPECT_EQ(r(1, 0), 0.0);
+  EXPECT_NEAR(std::abs(r(1, 1)), 0.4, kDenseRounding);  // sqrt(5 - 2.2^2)
+}
+
+TEST(Dense, UpperFactorsAreNoHigherThanTheMatrixIsWide) {
+  const Eigen::MatrixXd high = Eigen::MatrixXd::Random(120, 70), wide = Eigen::MatrixXd::Random(70, 120);
+  for (const Eigen::MatrixXd& a : {high, wide}) {
+    const Eigen::MatrixXd r = upper_factor(a);
+    EXPECT_EQ(r.rows(), 70);
+    EXPECT_EQ(r.cols(), a.cols());
+    EXPECT_TRUE((r.transpose() * r).isApprox(a.transpose() * a, kDenseRounding));
+  }
+  EXPECT_EQ(upper_factor(Eigen::MatrixXd(3, 0)).rows(), 0);
+  EXPECT_EQ(upper_factor(Eigen::MatrixXd(0, 3)).rows(), 0);
+}
+
+TEST(Dense, ProductsWithUpperFactorsLeaveOutTheZeros) {
+  for (const auto& [rows, columns] : {std::pair(1, 1), {48, 48}, {70, 120}, {100, 49}}) {
+    const Eigen::MatrixXd r = upper_factor(Eigen::MatrixXd::Random(rows, columns));
+    const Eigen::MatrixXd a = Eigen::MatrixXd::Random(r.rows(), 5);
+    Eigen::MatrixXd c = Eigen::MatrixXd::Ones(5, columns);
+    add_transposed_product_upper(a, r, c);
+    EXPECT_TRUE(c.isApprox(Eigen::MatrixXd::Ones(5, columns) + a.transpose() * r, kDenseRounding))
+        << rows << " x " << columns;
+  }
 }
 
 TEST(Dense, LeastSquaresOfALineThroughThreePoints) {

@@ -2,8 +2,11 @@
 
 #include "volcal/identify/io/campaign/campaign_notes.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "tests/support/broken_campaigns.h"
 #include "tests/support/scratch_folder.h"
@@ -151,6 +154,24 @@ TEST_F(NotesTest, RowsThatRepeatAreTold) {
   EXPECT_THAT(sentences(twice.notes),
               ElementsAre(HasSubstr("3 of 6 rows repeat an earlier row in every column, line 5 that of "
                                     "line 2")));
+}
+
+/// The file of a run under another time and run; readings in whole micrometres can agree by themselves.
+TEST_F(NotesTest, CopiesWithOtherTimesAreTold) {
+  const auto runs = [](const char* format) {
+    std::string csv = "x_mm,y_mm,z_mm,displacement_mm,time_s,run\n";
+    for (int row = 0; row < 20; ++row) {
+      const int k = row % 10;
+      csv += fmt::format("{},0,0,", 20 * k) +
+             fmt::format(fmt::runtime(format), 20 * k + 1e-3 * std::sin(k + 1)) +
+             fmt::format(",{},{}\n", 5 * row, 1 + row / 10);
+    }
+    return csv;
+  };
+  EXPECT_THAT(sentences(read(runs("{:.6f}")).notes),
+              Contains(HasSubstr("10 of 20 rows repeat an earlier row in all but its time, line 12 that of "
+                                 "line 2")));
+  EXPECT_THAT(sentences(read(runs("{:.3f}")).notes), Not(Contains(HasSubstr("repeat an earlier row"))));
 }
 
 /// Without times equal readings may be chance: three of ten of a coarse dial gauge are no copies.

@@ -67,7 +67,11 @@ FiveAxisCompensation::FiveAxisCompensation(const Machine& machine, const FiveAxi
     if (is_rotary(axis.name)) centre_[rotary_index(axis.name)] = axis.centre;
   }
   if (settings_.type.has(Part::Orientation)) require_turning_axes(machine);
-  if (!settings_.type.is_volumetric()) return;
+  const auto turns_workpiece = [](const Joint& joint) {
+    return joint.workpiece_side && is_rotary(joint.axis);
+  };
+  const bool has_table = std::ranges::any_of(machine.structure.joints, turns_workpiece);
+  if (!settings_.type.is_volumetric() || (has_table && settings_.type.has(Part::RotaryLocation))) return;
   const AxisPosition home = home_of(machine);
   const Levers at = levers_at(home);
   home_moves_ = linear_moves(at.linear_w, shares_at(home, kTowardsPlus, at).linear);

@@ -11,8 +11,9 @@
 /// workpiece coordinates. Directions that they hardly move (singular values of J below a twentieth) are left.
 /// R-VOL, the sum of all, depends on no reference. A parallel axis U, V, W is at its position in all levers
 /// and its errors are among those of L-VOL; X, Y, Z move, as far as there is a direction that they move.
-/// L-VOL is here with the rotary axes where they stand, zero at home approached towards +; the parts L-POS to
-/// L-ANG are those of compensation.h.
+/// L-VOL is here with the rotary axes where they stand, zero at home approached towards +, but with R-POR
+/// where a table turns the workpiece: the error at home does not turn with it. The parts L-POS to L-ANG are
+/// those of compensation.h.
 ///
 /// FOR turns two rotary axes so that the tool's axis, z of the tool, has its nominal direction in the
 /// workpiece. Errors of all axes count (8.2.6, note). Near a pole one rotary axis hardly turns it; the moves

@@ -1,11 +1,14 @@
 #include "volcal/identify/compensation/rotary_tables.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
-#include "volcal/identify/compensation/five_axis_compensation.h"
+#include "volcal/identify/compensation/compensation.h"
+#include "volcal/identify/compensation/joint_error_shares.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
-#include "volcal/identify/errors/rotary/rotary_grid.h"
+#include "volcal/model/description/errors.h"
 
 namespace volcal {
 
@@ -15,6 +18,54 @@ double grid_step(const TableFormatOptions& options) {
 
 double rotary_table_step(const TableFormatOptions& options) {
   return options.rotary_step > 0.0 ? options.rotary_step : kDefaultRotaryTableStep;
+}
+
+std::optional<AxisName> outermost_table_axis(const Structure& structure) {
+  std::optional<AxisName> outermost;
+  for (const Joint& joint : structure.joints) {  // workpiece to tool
+    if (joint.workpiece_side && is_rotary(joint.axis)) outermost = joint.axis;
+  }
+  return outermost;
+}
+
+Eigen::Vector3d displacement_at_home(const FitResult& result, const TableFormatOptions& options) {
+  const auto table = outermost_table_axis(result.machine.structure);
+  const std::vector<AxisName> identified = identified_rotary_axes(result);
+  const bool is_left = table && std::ranges::find(identified, *table) != identified.end() &&
+                       !options.type.linear().empty() && options.type.has(CompensationPart::RotaryLocation);
+  if (!is_left) return Eigen::Vector3d::Zero();
+  return errors_to_correct(result, options)(home_of(result.machine), kTowardsPlus);
+}
+
+void add_displacement_of_table(const Structure& structure, const Eigen::Vector3d& displacement,
+                               PoseErrors<double>& errors) {
+  const auto axis = outermost_table_axis(structure);
+  if (!axis) return;
+  for (std::size_t k = 0; k < 3; ++k)
+    errors.location[index_of(*axis)][k] -= displacement[static_cast<Eigen::Index>(k)];
+}
+
+JointErrorSource rotary_errors_to_correct(const FitResult& result, const TableFormatOptions& options) {
+  return [errors = of_rotary_axes(
+              joint_errors(result, tool_of(result.machine, options), conditions_of(result, options))),
+          displacement = displacement_at_home(result, options), structure = result.machine.structure](
+             const AxisPosition& position, const ApproachDirection& direction) {
+    PoseErrors<double> all = errors(position, direction);
+    add_displacement_of_table(structure, displacement, all);
+    return all;
+  };
+}
+
+std::vector<RotaryGrid> rotary_grids_to_correct(const FitResult& result, const TableFormatOptions& options,
+                                                const RotaryShares& shares) {
+  std::vector<RotaryGrid> grids =
+      rotary_grids(result, conditions_of(result, options), grid_step(options), shares);
+  const Eigen::Vector3d displacement = displacement_at_home(result, options);
+  for (RotaryGrid& grid : grids) {
+    if (grid.body != TurnedBody::Table) continue;
+    for (RotaryTwist& twist : grid.twists) twist.value.head<3>() += displacement;
+  }
+  return grids;
 }
 
 std::vector<SampledTable> sample_rotary_positioning(const TableFormat& format, const FitResult& result,

@@ -1,9 +1,12 @@
 #pragma once
 /// Compensations of rotary axes sampled for a format.
 
+#include <optional>
 #include <vector>
 
+#include "volcal/identify/compensation/five_axis_compensation.h"
 #include "volcal/identify/compensation/sampled_tables.h"
+#include "volcal/identify/errors/rotary/rotary_grid.h"
 
 namespace volcal {
 
@@ -13,6 +16,27 @@ inline constexpr double kDefaultRotaryTableStep = 5.0 * 3.14159265358979323846 /
 /// Largest step of the options, or the default, rad.
 double grid_step(const TableFormatOptions& options);
 double rotary_table_step(const TableFormatOptions& options);
+
+/// Of the rotary axes that turn the workpiece, the one nearest to the bed.
+std::optional<AxisName> outermost_table_axis(const Structure& structure);
+
+/// Error of the linear axes at home approached towards +, m, which their tables leave, since they are zero
+/// there. Where a table turns the workpiece it does not turn with it: it is a displacement of the table's
+/// outermost axis, which R-POR corrects. Zero where there is no such axis or its errors were not identified,
+/// and where the type has no tables of linear axes or no R-POR.
+Eigen::Vector3d displacement_at_home(const FitResult& result, const TableFormatOptions& options);
+
+/// Of all rotary axes at a pose, with displacement_at_home().
+JointErrorSource rotary_errors_to_correct(const FitResult& result, const TableFormatOptions& options);
+
+/// Grids of rotary_grids() as compensations hold them, with displacement_at_home().
+std::vector<RotaryGrid> rotary_grids_to_correct(const FitResult& result, const TableFormatOptions& options,
+                                                const RotaryShares& shares = {});
+
+/// A displacement of the functional point against the workpiece, m, machine coordinates with the rotary axes
+/// at 0, as the location error of the outermost axis that turns the workpiece; nothing where there is none.
+void add_displacement_of_table(const Structure& structure, const Eigen::Vector3d& displacement,
+                               PoseErrors<double>& errors);
 
 /// R-POS: what each identified rotary axis adds to its own command, rad, at equal steps; `beyond` is Repeat
 /// where one turn is written. A format that tells no directions apart gets the mean in both columns.

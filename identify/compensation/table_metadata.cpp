@@ -1,7 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "volcal/identify/compensation/csv_tables.h"
 #include "volcal/identify/compensation/rotary_tables.h"
@@ -260,16 +265,27 @@ class MetadataReader {
     if (machine.datum.primary == machine.datum.secondary)
       fail("datum.secondary", "primary and secondary axis differ");
     for (const Joint& joint : machine.structure.joints) machine.axes.push_back(axis(joint.axis));
+    for (const std::string& name : tool_names())
+      machine.tools.push_back({name, point(offset_key(name)), 0.0});
+    return machine;
+  }
+
+  static std::string offset_key(const std::string& tool) { return "tools." + tool + ".offset"; }
+
+  /// That of the tables first, which is the one that is taken where none is named; the others as they stand.
+  std::vector<std::string> tool_names() const {
+    constexpr std::string_view kPrefix = "tools.", kSuffix = ".offset.x_mm";
+    std::map<std::int64_t, std::string> by_line;
     for (const auto& [key, row] : rows_) {
-      constexpr std::string_view kPrefix = "tools.", kSuffix = ".offset.x_mm";
       if (!key.starts_with(kPrefix) || !key.ends_with(kSuffix)) continue;
       if (key.size() < kPrefix.size() + kSuffix.size()) continue;
-      Tool tool;
-      tool.name = key.substr(kPrefix.size(), key.size() - kPrefix.size() - kSuffix.size());
-      tool.offset = point("tools." + tool.name + ".offset");
-      machine.tools.push_back(tool);
+      by_line[row.place.line] = key.substr(kPrefix.size(), key.size() - kPrefix.size() - kSuffix.size());
     }
-    return machine;
+    std::vector<std::string> names;
+    for (const auto& [line, name] : by_line) names.push_back(name);
+    const auto own = std::ranges::find(names, text("tool"));
+    if (own != names.end()) std::rotate(names.begin(), own, own + 1);
+    return names;
   }
 
   const TableFile& file_;

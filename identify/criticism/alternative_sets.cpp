@@ -19,7 +19,8 @@ namespace volcal {
 namespace {
 
 constexpr int kPointsPerAxis = 5;
-constexpr double kAnyNoise = 1e-6;  // m: the points are predicted, not measured
+constexpr double kNoDifference = 1e-9;  // m: rounding and less than any machine moves
+constexpr double kAnyNoise = 1e-6;      // m: the points are predicted, not measured
 
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -165,7 +166,8 @@ class SetJudge {
  private:
   static void find_farthest(SetFinding& set) {
     const auto exceeds = [&set](std::size_t i) {
-      return set.members[i].difference > kCoverageFactor * set.members[i].difference_u;
+      return set.members[i].difference >
+             std::max(kNoDifference, kCoverageFactor * set.members[i].difference_u);
     };
     for (std::size_t i = 0; i < set.members.size(); ++i) {
       if (i == set.chosen || std::isnan(set.members[i].difference)) continue;

@@ -277,14 +277,20 @@ TcpRewriter::Node TcpRewriter::node_at(double t) {
   return {t, tcp_->command(TcpPose::between(from_, to_, t), last_directions_)};
 }
 
+/// A table of a whole turn goes on for ever; a head has cables.
+bool TcpRewriter::turns_endlessly(const Axis& axis) const {
+  const auto& joints = machine_.structure.joints;
+  return is_rotary(axis.name) && axis.travel() > kWholeTurns &&
+         std::ranges::find(joints, axis.name, &Joint::axis)->workpiece_side;
+}
+
 void TcpRewriter::require_reachable(const TcpPose& sent) const {
   const AxisPosition position = tcp_->axes_at(sent);
   for (const Axis& axis : machine_.axes) {
     const double q = position[index_of(axis.name)];
-    const bool turns = is_rotary(axis.name) && axis.travel() > kWholeTurns;
     const bool inside =
         q >= axis.travel_min - kTcpTravelRounding && q <= axis.travel_max + kTcpTravelRounding;
-    if (turns || inside) continue;
+    if (inside || turns_endlessly(axis)) continue;
     const Unit unit = position_unit(axis.name);
     place().refuse(
         fmt::format("the block takes {} to {:.4f} {} in machine coordinates, outside its travel {:g} "

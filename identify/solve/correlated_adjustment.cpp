@@ -122,9 +122,7 @@ CorrelatedAdjustment adjust_correlated(const WhitenedCampaign& campaign, const G
     GaussianPrior total = prior;
     add_smoothing(terms, total);
     const NoiseGroupEquations sums = sum_of(equations);
-    const auto factor = cholesky_lower(sums.matrix + total.precision);
-    if (!factor) throw std::runtime_error("adjust_correlated: the normal matrix is not positive definite");
-    result.covariance = inverse_from_cholesky(*factor);
+    result.covariance = invert_precision(sums.matrix + total.precision).covariance;
     const Eigen::VectorXd gradient = sums.gradient + total.gradient(z);
     const Eigen::VectorXd step = -(result.covariance * gradient);
     z += step;

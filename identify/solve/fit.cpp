@@ -341,10 +341,7 @@ class Identification {
     const std::vector<double> weight = weights(sigma());
     NormalAccumulator accumulator(index_, weight, nullptr, threads_);
     const NormalEquations& sums = accumulator.accumulate(parameters_);
-    const auto factor = cholesky_lower(datum_->reduce_matrix(sums.matrix) + prior().precision);
-    if (!factor)
-      throw std::runtime_error("the normal matrix is not positive definite after the rank analysis");
-    reduced_covariance_ = inverse_from_cholesky(*factor);
+    reduced_covariance_ = invert_precision(datum_->reduce_matrix(sums.matrix) + prior().precision).covariance;
     result_.covariance = datum_->expand_covariance(reduced_covariance_);
   }
 

@@ -50,8 +50,11 @@ Worst worst_of(const std::vector<ResidualRecord>& records, std::size_t setup) {
       "this reading alone is far off: correct it, or leave it out with leave_out = [{ rows = [" +
       std::to_string(worst.line) + "], reason = \"...\" }]";
   const std::string all =
-      "check the unit of the reading column (scale = { ... = 1000.0 }), the tool, and what the setup says of "
-      "station, centre or direction";
+      std::string("check the unit of the reading column (scale = { ... = 1000.0 }), the tool, ") +
+      (setup.readings.given.empty()
+           ? ""
+           : "whether normals point out of the sphere and its radius is no diameter, ") +
+      "and what the setup says of station, centre or direction";
   throw InputError({setup.data.empty() ? campaign.file : setup.data, worst.line}, problem.str(),
                    worst.share > kBlunderShare ? one : all);
 }

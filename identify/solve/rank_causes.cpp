@@ -22,6 +22,8 @@ std::string letter(AxisName axis) { return std::string(1, letter_of(axis)); }
 
 constexpr double kLeastApart = 1e-3;  // of the travel
 constexpr double kPiecesOfAGap = 2.0;
+constexpr double kMostOfTravel = 0.9;
+constexpr double kWholeTurn = 2.0 * std::numbers::pi - 1e-6;  // rad
 
 bool axis_moves(const Campaign& campaign, AxisName axis) {
   const MeasuredRange range = measured_range(campaign, axis);
@@ -161,11 +163,29 @@ std::size_t spheres(const ParameterLayout& layout) {
   }));
 }
 
+/// Of an axis that travels less than a turn and was measured over a part of it, as the gauge of its error
+/// motions is taken over the travel (rotary_gauge.h).
+bool is_measured_in_part(const Campaign& campaign, AxisName axis) {
+  const double travel = campaign.machine.axis(axis).travel();
+  const MeasuredRange range = measured_range(campaign, axis);
+  return travel < kWholeTurn && range.max - range.min < kMostOfTravel * travel;
+}
+
 /// What tells errors of rotary axes apart: poses of both, places on the table, tools to the side. Of tools
 /// those count that the axis moves; `cause` tells where others are in use.
 std::vector<std::string> rotary_remedies(const MeasurementModel& model, AxisName axis, Finding& cause) {
   const Campaign& campaign = model.campaign();
   std::vector<std::string> remedies;
+  if (is_measured_in_part(campaign, axis)) {
+    const Axis& own = campaign.machine.axis(axis);
+    const MeasuredRange range = measured_range(campaign, axis);
+    remedies.emplace_back("measured-travel");
+    cause.data["partly"] = letter(axis);
+    for (const auto& [key, value] :
+         {std::pair("from", range.min), std::pair("to", range.max), std::pair("travel_from", own.travel_min),
+          std::pair("travel_to", own.travel_max)})
+      cause.data[key] = FindingNumber{value, "deg", kRadianPerDegree};
+  }
   const std::vector<AxisName> moving = moving_rotary_axes(campaign);
   if (moving.size() > 1 && !turns_two_at_once(campaign, moving)) remedies.emplace_back("combined-poses");
   const std::size_t sphere_count = spheres(model.layout());
@@ -274,7 +294,7 @@ Finding cause_exchangeable(const MeasurementModel& model, const std::string& nam
     remedies.emplace_back("third-tool");
     cause.data["third_tool_across"] = std::string(1, *across);
   }
-  if (station_count == 0 && std::ranges::any_of(partners, is_nuisance))
+  if (station_count == 0 && !cause.has("partly") && std::ranges::any_of(partners, is_nuisance))
     remedies.emplace_back("holding-instrument");
   if (remedies.empty()) remedies.emplace_back("other-lines");
   cause.data["partners"] = std::move(partners);

@@ -17,6 +17,7 @@
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/kinematics/rotary_datum.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
@@ -39,6 +40,7 @@ void report_stated_sigma(FitResult& result) {
                                 {"times", FindingNumber{component.scale}},
                                 {"independent_part", result.noise.more_than_white},
                                 {"unit_slip", unit_slip},
+                                {"too_quiet", component.scale < 1.0 / kUnitSlip},
                                 {"hardly_noise", component.scale > kSeveralTimes && !unit_slip}}});
   }
 }
@@ -219,6 +221,28 @@ void report_hidden_harmonics(const Campaign& campaign, FitResult& result) {
   }
 }
 
+/// Of rotary axes that move: what the model file leaves out of their errors.
+void report_rotary_errors_left_out(const Campaign& campaign, FitResult& result) {
+  const ModelSpec& model = result.identified;
+  const std::vector<AxisName> without = rotary_axes_without_errors(campaign, model);
+  const std::vector<LocationSymbol> known = independent_locations(campaign.machine);
+  for (const AxisName axis : moving_rotary_axes(campaign)) {
+    Finding finding{FindingCode::RotaryErrorsNotInModel,
+                    {{"axis", std::string(1, letter_of(axis))}, {"by_model", true}}};
+    if (std::ranges::find(without, axis) == without.end()) {
+      std::vector<std::string> missing;
+      for (const LocationSymbol& symbol : known) {
+        const bool is_off = std::ranges::find(model.locations_off, symbol) != model.locations_off.end();
+        if (symbol.axis == axis && !is_off && !model.locations.contains(symbol))
+          missing.push_back(symbol.name());
+      }
+      if (missing.empty()) continue;
+      finding.data["locations"] = missing;
+    }
+    result.findings.push_back(std::move(finding));
+  }
+}
+
 void report_lack_of_fit(FitResult& result) {
   result.findings.push_back(
       {FindingCode::FitLackOfFit,
@@ -236,6 +260,7 @@ void judge(const MeasurementModel& model, const AdjustmentEnd& end, FitResult& r
   const bool lack = exceedance < kSignificanceOfLackOfFit && result.sigma0 > kSmallestLackOfFit;
   result.findings.insert(result.findings.end(), result.rank.invisible.begin(), result.rank.invisible.end());
   report_hidden_harmonics(campaign, result);
+  report_rotary_errors_left_out(campaign, result);
   report_left_out(campaign, result);
   report_outliers(result);
   report_contradicted_priors(result);

@@ -102,6 +102,16 @@ std::string angles_misread(const Finding& finding) {
              join_names(entries));
 }
 
+std::string positions_misread(const Finding& finding) {
+  return in_setup(finding) + fmt::format(
+                                 "with its tool the nominal tool point scatters by {:.4g} mm where it stands "
+                                 "at one sphere: are its "
+                                 "positions those of the machine's axes (a control with tool centre point "
+                                 "motion shows others), is "
+                                 "the tool the right one?",
+                                 finding.number("miss").in_unit());
+}
+
 std::string angles_in_radians(const Finding& finding) {
   const std::vector<std::string> columns = finding.texts("columns");
   std::vector<std::string> entries;
@@ -158,6 +168,7 @@ std::span<const SentenceMaker> campaign_sentences() {
       {FindingCode::ReadingsTimesFarApart, times_far_apart},
       {FindingCode::ReadingsMovesTooFast, moves_too_fast},
       {FindingCode::ReadingsAnglesMisread, angles_misread},
+      {FindingCode::ReadingsPositionsMisread, positions_misread},
       {FindingCode::ReadingsAnglesInRadians, angles_in_radians},
       {FindingCode::ReadingsMisread, misread},
       {FindingCode::ReadingsDuplicated, duplicated},

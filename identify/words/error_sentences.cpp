@@ -126,6 +126,12 @@ std::string tables_off_ideal(const Finding& finding) {
 }
 
 std::string rotary_tables_off_ideal(const Finding& finding) {
+  if (finding.flag("constants"))
+    return fmt::format(
+        "the constants of rotary axes are up to {:.2f} um off what R-POR could correct: they say where the "
+        "axes "
+        "are, not how they are tilted, which grids of rotary axes hold",
+        finding.number("off").in_unit());
   return fmt::format(
       "tables of rotary axes are up to {:.2f} um off what their types could correct: what changes within one "
       "of their steps, as the errors of a worm, needs a finer --rotary-step; what depends on two axes at "
@@ -152,6 +158,18 @@ std::string tables_leave_more(const Finding& finding) {
 
 std::string rotary_not_in_model(const Finding& finding) {
   const std::string& axis = finding.text("axis");
+  if (const std::vector<std::string> locations = finding.texts("locations"); !locations.empty())
+    return fmt::format(
+        "axis {} moves in these readings, and the model file leaves out its location errors {}: what they do "
+        "is "
+        "in the residuals; add {} = 0.0 below [locations], or \"zero\" for each that is known to be none",
+        axis, fmt::join(locations, ", "), locations.front());
+  if (finding.flag("by_model"))
+    return fmt::format(
+        "axis {} moves in these readings, and the model file leaves out its errors: what they do is in the "
+        "residuals; take default = {{ basis = \"zero\" }} out of the model file, or name its functions and "
+        "locations there",
+        axis);
   return fmt::format(
       "axis {} moves in these readings, and the model has no errors of it: what they do is in the "
       "residuals{}; "

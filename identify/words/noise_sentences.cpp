@@ -26,6 +26,12 @@ std::string sigma_contradicted(const Finding& finding) {
         "; is its noise stated in a unit 1000 times too small (nm for um)? check the noise table of its "
         "setups and the unit of the readings";
   }
+  if (finding.flag("too_quiet")) {
+    text +=
+        "; an instrument's readings hardly scatter so little: are they in a larger unit than their columns "
+        "say (mm "
+        "for um, then add scale = { COLUMN = 1000 } to its setups), or were they computed?";
+  }
   if (finding.flag("hardly_noise")) text += kHardlyNoise;
   return text;
 }

@@ -83,6 +83,14 @@ std::string remedy_in_words(const std::string& remedy, const Finding& finding) {
   if (remedy == "one-axis-standing")
     return fmt::format("move {} while {} stands, at several positions of {}: they move together only",
                        finding.text("moving"), finding.text("standing"), finding.text("standing"));
+  if (remedy == "measured-travel") {
+    const auto degrees = [&](const char* key) { return finding.number(key).in_unit(); };
+    return fmt::format(
+        "measure {} over its travel, {:.4g} to {:.4g} deg, or state in the machine file the {:.4g} to {:.4g} "
+        "deg "
+        "that were measured",
+        finding.text("partly"), degrees("travel_from"), degrees("travel_to"), degrees("from"), degrees("to"));
+  }
   if (remedy == "stations") return "measure from more stations (four, well apart)";
   if (remedy == "second-tool" && finding.has("turning"))
     return fmt::format(

@@ -19,6 +19,7 @@ constexpr auto kFindingCodes = [] {
       {ReadingsTimesFarApart, "readings.times-far-apart", Severity::Warning},
       {ReadingsMovesTooFast, "readings.moves-too-fast", Severity::Warning},
       {ReadingsAnglesMisread, "readings.angles-misread", Severity::Warning},
+      {ReadingsPositionsMisread, "readings.positions-misread", Severity::Warning},
       {ReadingsAnglesInRadians, "readings.angles-in-radians", Severity::Warning},
       {ReadingsMisread, "readings.misread", Severity::Warning},
       {ReadingsDuplicated, "readings.duplicated", Severity::Warning},

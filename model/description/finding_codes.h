@@ -15,6 +15,7 @@ enum class FindingCode : std::uint8_t {
   ReadingsTimesFarApart,
   ReadingsMovesTooFast,
   ReadingsAnglesMisread,
+  ReadingsPositionsMisread,
   ReadingsAnglesInRadians,
   ReadingsMisread,
   ReadingsDuplicated,

@@ -75,7 +75,8 @@ enum class RotaryModel {
 
 /// A control that computes the functional point from tables of single errors and the tool it was told, with
 /// the exact transforms of truth_machine.h. Errors of linear axes count with the rotary axes at 0 and are
-/// zero at home approached towards +.
+/// zero at home approached towards +, but where the control turns the workpiece: their error at home does not
+/// turn with it.
 struct ControlModel {
   Machine machine;
   Eigen::Vector3d tool = Eigen::Vector3d::Zero();

@@ -98,6 +98,18 @@ TruthMachine described_machine(const ControlModel& model, bool rotary) {
   return machine;
 }
 
+/// Whether it turns the workpiece by the axis nearest to the bed, and has errors of that.
+bool turns_the_workpiece(const ControlModel& model) {
+  if (model.rotary == RotaryModel::None) return false;
+  const auto& joints = model.machine.structure.joints;
+  const auto outermost = std::find_if(joints.rbegin(), joints.rend(), [](const Joint& joint) {
+    return joint.workpiece_side && is_rotary(joint.axis);
+  });
+  if (outermost == joints.rend()) return false;
+  const auto is_its = [&](const auto& entry) { return entry.first.axis == outermost->axis; };
+  return std::ranges::any_of(model.motions, is_its) || std::ranges::any_of(model.locations, is_its);
+}
+
 CommandCorrection linear_model_correction(const ControlModel& model) {
   const auto machine = std::make_shared<const TruthMachine>(described_machine(model, false));
   MachineState home;
@@ -105,7 +117,8 @@ CommandCorrection linear_model_correction(const ControlModel& model) {
   for (const Axis& axis : model.machine.axes) {
     if (!is_rotary(axis.name)) home.position[index_of(axis.name)] = axis.home;
   }
-  const Eigen::Vector3d at_home = machine->point_error(home, model.tool);
+  Eigen::Vector3d at_home = Eigen::Vector3d::Zero();
+  if (!turns_the_workpiece(model)) at_home = machine->point_error(home, model.tool);
   return [machine, at_home, tool = model.tool](MachineState state) {
     for (const AxisName axis : kAllAxes) {
       if (is_rotary(axis)) state.position[index_of(axis)] = 0.0;

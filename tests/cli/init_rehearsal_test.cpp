@@ -56,5 +56,14 @@ INSTANTIATE_TEST_SUITE_P(All, InitRehearsal,
                                            RehearsedMachine{"plane", "w B' X' b Z t"}),
                          [](const auto& each) { return std::string(each.param.name); });
 
+/// A slide on a turntable on the tool's side: its spheres are within reach.
+TEST(InitTemplates, AColumnThatTurnsIsSimulated) {
+  const testing::ScratchFolder scratch;
+  const std::string folder = scratch.path().string();
+  ASSERT_EQ(run_program("init \"w b C X Z t\" -o " + folder + "/five").exit_code, 0);
+  const auto simulated = run_program("simulate " + folder + "/five/study.toml -o " + folder + "/rehearsal");
+  EXPECT_EQ(simulated.exit_code, 0) << simulated.errors;
+}
+
 }  // namespace
 }  // namespace volcal

@@ -262,6 +262,12 @@ std::string rotary_measurements(const Structure& structure) {
   return text;
 }
 
+/// An axis on the tool's side that turns a slide, as a column on a turntable.
+bool carries_linear_axes(const Structure& structure, AxisName axis) {
+  const auto own = std::ranges::find(structure.joints, axis, &Joint::axis);
+  return std::any_of(own, structure.joints.end(), [](const Joint& joint) { return !is_rotary(joint.axis); });
+}
+
 }  // namespace
 
 bool has_rotary_axes(const Structure& structure) {
@@ -271,12 +277,12 @@ bool has_rotary_axes(const Structure& structure) {
 std::string axis_table_beside_rotary(AxisName axis, const Structure& structure) {
   const bool head = has_rotary_axes(structure, false);
   if (is_rotary(axis)) {
-    const bool table = is_on_workpiece_side(structure, axis);
+    const bool nose = !is_on_workpiece_side(structure, axis) && !carries_linear_axes(structure, axis);
     return fmt::format(
         "[axes.{}]\ntravel_deg = [{}]\nhome_deg = 0.0\ncentre_mm = [0.0, 0.0, {}]  # a point of the axis "
         "line, all axes at 0{}\n",
-        letter_of(axis), axis == AxisName::C ? "-180.0, 180.0" : "-90.0, 90.0", table ? "-400.0" : "150.0",
-        table ? "" : ": above the spindle's nose");
+        letter_of(axis), axis == AxisName::C ? "-180.0, 180.0" : "-90.0, 90.0", nose ? "150.0" : "-400.0",
+        nose ? ": above the spindle's nose" : "");
   }
   const std::string travel = axis == AxisName::Z ? (head ? "-700.0, 0.0" : "-500.0, 0.0")
                                                  : (head ? "-600.0, 600.0" : "-300.0, 300.0");

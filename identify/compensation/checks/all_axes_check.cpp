@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "volcal/identify/compensation/checks/joint_error_shares.h"
 #include "volcal/identify/compensation/five_axis_compensation.h"
+#include "volcal/identify/compensation/joint_error_shares.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/errors/volume/volumetric.h"
 

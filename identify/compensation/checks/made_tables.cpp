@@ -65,8 +65,9 @@ void report_step(const FitResult& result, MadeTables& made) {
 
 void report_rotary_step(double tolerance, MadeTables& made) {
   if (!made.rotary_check || made.rotary_check->deviation <= kCoarseStep * tolerance) return;
-  made.cautions.push_back(
-      {FindingCode::RotaryTablesOffIdeal, {{"off", in_micrometres(made.rotary_check->deviation)}}});
+  made.cautions.push_back({FindingCode::RotaryTablesOffIdeal,
+                           {{"off", in_micrometres(made.rotary_check->deviation)},
+                            {"constants", made.options.type.rotary() == CompensationPart::RotaryLocation}}});
 }
 
 void report_rotary_directions(MadeTables& made) {

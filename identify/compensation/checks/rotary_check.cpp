@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "volcal/identify/compensation/checks/joint_error_shares.h"
 #include "volcal/identify/compensation/five_axis_compensation.h"
+#include "volcal/identify/compensation/rotary_tables.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
@@ -43,8 +43,7 @@ FiveAxisCompensation ideal_of_rotary_axes(const FitResult& result, const TableFo
   FiveAxisSettings settings;
   settings.type = options.type.rotary();
   settings.tool_offset = tool.offset;
-  return {result.machine, settings,
-          of_rotary_axes(joint_errors(result, tool, conditions_of(result, options)))};
+  return {result.machine, settings, rotary_errors_to_correct(result, options)};
 }
 
 /// The machine with the errors of its rotary axes alone, and what tables add to its commands for them.

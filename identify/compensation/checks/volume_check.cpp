@@ -243,6 +243,8 @@ double deviation_of(const TableFormat& format, const FitResult& result, const Ta
 StepChoice choose_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
                        double tolerance) {
   if (!format.limits.sampled) return {0.0, 0.0, true, false};
+  // What tables of rotary axes leave is no matter of the step.
+  if (!format.indivisible && !options.type.linear().empty()) options.type = options.type.linear();
   const Compensation ideal = sampled_compensation(format, result, options);
   double longest = 0.0;
   for (const AxisName axis : linear_axes_of(result.machine))

@@ -79,28 +79,43 @@ std::vector<TableFile> write_csv(const FitResult& result, const TableFormatOptio
   files.push_back(spatial_grid_file("compensation_grid.csv", result, options.grid_per_axis,
                                     conditions_of(result, options), TableContent::Compensations));
   if (!options.type.rotary().empty() && no_rotary_grid(result).empty()) {
-    for (const RotaryGrid& grid : rotary_grids(result, conditions_of(result, options), grid_step(options))) {
-      for (const TableContent content : {TableContent::Errors, TableContent::Compensations})
-        files.push_back({rotary_grid_file_name(grid.body, content), rotary_grid_csv(grid, content, true)});
-    }
+    const TableContent errors_of = TableContent::Errors, corrections_of = TableContent::Compensations;
+    for (const RotaryGrid& grid : rotary_grids(result, conditions_of(result, options), grid_step(options)))
+      files.push_back({rotary_grid_file_name(grid.body, errors_of), rotary_grid_csv(grid, errors_of, true)});
+    for (const RotaryGrid& grid : rotary_grids_to_correct(result, options))
+      files.push_back(
+          {rotary_grid_file_name(grid.body, corrections_of), rotary_grid_csv(grid, corrections_of, true)});
   }
   files.push_back({"metadata.csv", table_metadata_csv(result, options)});
   return files;
 }
 
-/// Rotary axes by the control's own kinematic model, without the grids.
+/// Rotary axes by the control's own kinematic model, without the grids. `at_home`: what the tables of linear
+/// axes leave there.
 CorrectionTerm rotary_term(const TableMetadata& metadata, const Eigen::Vector3d& tool,
-                           std::shared_ptr<const FunctionTables> tables) {
+                           const Eigen::Vector3d& at_home, std::shared_ptr<const FunctionTables> tables) {
   FiveAxisSettings settings;
   settings.tool_offset = tool;
   const FiveAxisCompensation compensation(
       metadata.machine, settings,
-      [tables = std::move(tables)](const AxisPosition& position, const ApproachDirection& direction) {
-        return tables->at(position, direction);
+      [tables = std::move(tables), at_home, structure = metadata.machine.structure](
+          const AxisPosition& position, const ApproachDirection& direction) {
+        PoseErrors<double> errors = tables->at(position, direction);
+        add_displacement_of_table(structure, at_home, errors);
+        return errors;
       });
   return [compensation](const AxisPosition& position, const ApproachDirection& direction) {
     return compensation.correction(position, direction);
   };
+}
+
+/// Of the axis whose displacement the error at home is.
+bool hold_errors_of_table(const std::vector<ErrorTableRow>& rows, const Structure& structure) {
+  const auto table = outermost_table_axis(structure);
+  return table && std::ranges::any_of(rows, [&](const ErrorTableRow& row) {
+           const auto location = LocationSymbol::parse(row.symbol);
+           return location ? location->axis == *table : row.axis == table;
+         });
 }
 
 /// From compensation_tables.csv and metadata.csv, for the tool that the latter names; zero at home approached
@@ -131,7 +146,11 @@ CompensationTables read_csv(std::span<const TableFile> files) {
       [error, at_home](const AxisPosition& position, const ApproachDirection& direction) {
         return Correction{at_home - error(position, direction), {0.0, 0.0, 0.0}};
       });
-  if (!metadata.type.rotary().empty()) result.terms.push_back(rotary_term(metadata, tool, tables));
+  if (!metadata.type.rotary().empty()) {
+    const bool is_known = hold_errors_of_table(rows, metadata.machine.structure);
+    const Eigen::Vector3d left = is_known ? at_home : Eigen::Vector3d::Zero();
+    result.terms.push_back(rotary_term(metadata, tool, left, tables));
+  }
   // The grids hold the same once more: they must be sound.
   read_rotary_grids(files, TableContent::Errors);
   read_rotary_grids(files, TableContent::Compensations);

@@ -121,9 +121,8 @@ std::vector<std::string> isg_rotary_blocks(const TableFormat& format, const FitR
   if (type.has(CompensationPart::RotaryRadialAxial) != type.has(CompensationPart::RotaryAngular))
     throw InputError({}, std::string(format.name) + " holds R-RAX and R-ANG together alone",
                      "give both, or R-VOL");
-  const Tool& tool = tool_of(result.machine, options);
-  const JointErrorSource errors = joint_errors(result, tool, conditions_of(result, options));
-  std::vector<std::string> blocks = {tool_block(tool)};
+  const JointErrorSource errors = rotary_errors_to_correct(result, options);
+  std::vector<std::string> blocks = {tool_block(tool_of(result.machine, options))};
   for (const AxisName axis : identified_rotary_axes(result)) {
     const RotaryNodes nodes = rotary_nodes(result, axis, rotary_table_step(options));
     const auto& joints = result.machine.structure.joints;

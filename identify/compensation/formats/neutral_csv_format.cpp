@@ -166,8 +166,7 @@ void add_rotary_files(const FitResult& result, const TableFormatOptions& options
                      rotary_file(sample_rotary_positioning(neutral_csv_format(), result, options))});
   const RotaryShares shares = shares_of(options.type);
   if (!shares.location && !shares.motion) return;
-  for (const RotaryGrid& grid :
-       rotary_grids(result, conditions_of(result, options), grid_step(options), shares))
+  for (const RotaryGrid& grid : rotary_grids_to_correct(result, options, shares))
     files.push_back({rotary_grid_file_name(grid.body, TableContent::Compensations),
                      rotary_grid_csv(grid, TableContent::Compensations, false)});
   files.push_back({std::string(kMetadataFile), table_metadata_csv(result, options)});

@@ -73,6 +73,11 @@ class NominalGeometry {
   }
 
   bool says_something() const { return miss_ != nullptr && rows_.size() > 2; }
+  /// Whether the nominal tool point stands at one place in all readings, wherever that is.
+  bool is_of_one_place() const {
+    return miss_ == &NominalGeometry::about_one_place && setup_.readings.given.empty() &&
+           setup_.readings.value.size() == 3;
+  }
   /// Root mean square, m.
   double miss(const Reinterpretations& taken) const { return (this->*miss_)(points_w(taken)); }
 
@@ -193,8 +198,10 @@ std::optional<Finding> against_geometry(const NominalGeometry& geometry,
     least = miss;
     best = &way;
   }
-  if (best == nullptr || least > kBetter * as_read) return std::nullopt;
-  return angles_misread(*best, as_read, least);
+  if (best != nullptr && least <= kBetter * as_read) return angles_misread(*best, as_read, least);
+  if (!geometry.is_of_one_place()) return std::nullopt;
+  return Finding{FindingCode::ReadingsPositionsMisread,
+                 {{"miss", FindingNumber{as_read, "mm", kMetrePerMillimetre}}}};
 }
 
 /// Positions of up to a turn in radians that are whole or half degrees, and no round numbers as degrees.

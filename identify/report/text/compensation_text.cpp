@@ -123,8 +123,11 @@ std::string rotary_check_text(const RotaryCheck& check, const CompensationType& 
 }
 
 std::string all_axes_text(const AllAxesCheck& check) {
-  TextTable table({{"", Align::Left}, {"RMS [um]"}, {"max [um]"}},
-                  fmt::format("Errors of all axes left at {} poses of all axes", kAllAxesPoses));
+  TextTable table(
+      {{"", Align::Left}, {"RMS [um]"}, {"max [um]"}},
+      fmt::format(
+          "Errors of all axes left at {} poses of all axes, without the best rigid motion of the workpiece",
+          kAllAxesPoses));
   table.add_row(left_figures("before", check.before));
   table.add_row(left_figures("tables read back", check.exported));
   return table.text();

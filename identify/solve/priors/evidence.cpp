@@ -23,7 +23,8 @@ constexpr int kAmplitudeSteps = 4;
 constexpr int kSweeps = 10;
 constexpr double kRounding = 1e-10;  // of a precision that holds what a surface may not imitate at zero
 constexpr double kMostRounding = 1e-6;
-constexpr double kSettled = 0.02;  // of log evidence in one step
+constexpr double kLeastLeft = 1e-14;  // of a precision, when others are integrated out: below is rounding
+constexpr double kSettled = 0.02;     // of log evidence in one step
 // Of log evidence, for an axis to have another shape than the others: very strong evidence (Kass and Raftery
 // 1995, JASA 90, 773).
 constexpr double kWorthADeparture = 5.0;
@@ -151,7 +152,9 @@ class AxisEvidence {
     const Eigen::MatrixXd half = factor->triangularView<Eigen::Lower>().solve(across);
     const Eigen::VectorXd half_gradient =
         factor->triangularView<Eigen::Lower>().solve(Eigen::VectorXd(all.gradient(others)));
+    const Eigen::VectorXd before = cost_.precision.diagonal();
     cost_.precision -= half.transpose() * half;
+    cost_.precision.diagonal() = cost_.precision.diagonal().cwiseMax(kLeastLeft * before);
     cost_.gradient -= half.transpose() * half_gradient;
   }
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -11,9 +12,11 @@
 #include "tests/support/refusal.h"
 #include "tests/support/rotary_machines.h"
 #include "volcal/identify/compensation/checks/made_tables.h"
+#include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/sim/machine/truth_machine.h"
 
 namespace volcal {
@@ -126,6 +129,19 @@ TEST(LinuxCncTrt, WhatTiltsLeaveIsPrinted) {
               made.rotary_check->ideal.rms * 1e6, made.rotary_check->exported.rms * 1e6);
   EXPECT_LT(made.rotary_check->exported.rms, made.rotary_check->before.rms);
   EXPECT_GT(made.rotary_check->exported.rms, made.rotary_check->ideal.rms);
+  const auto off = std::ranges::find(made.cautions, FindingCode::RotaryTablesOffIdeal, &Finding::code);
+  ASSERT_NE(off, made.cautions.end());
+  EXPECT_TRUE(off->flag("constants"));
+}
+
+/// Tables of linear axes need no finer step for what pivots cannot hold.
+TEST(LinuxCncTrt, TiltsDoNotChooseTheStep) {
+  TableFormatOptions options = pivots_alone();
+  options.type = CompensationPart::Positioning | CompensationType(CompensationPart::RotaryLocation);
+  const StepChoice step =
+      choose_step(*find_table_format("linuxcnc-trt"), testing::rotary_result(kTrtTrunnion), options, 0.2e-6);
+  EXPECT_TRUE(step.reached);
+  EXPECT_LE(step.deviation, 0.2e-6);
 }
 
 TEST(LinuxCncTrt, RefusesOtherMachinesAndTools) {

@@ -156,6 +156,33 @@ INSTANTIATE_TEST_SUITE_P(
         LoopCase{"fanuc", "L-POS+R-POS", testing::kTrunnion, {{"detection_unit_deg", "0.0001"}}},
         LoopCase{"fanuc", "R-POS", testing::kHead, {{"sign", "error"}}}));
 
+/// Linear axes that err by 4 and 7 um everywhere, home included, where their tables are zero: the table turns
+/// the workpiece and not that error, which the tables of rotary axes take.
+TEST(ErrorAtHome, DoesNotTurnWithTheTable) {
+  testing::GivenErrors given;
+  given.functions["EYX"] = [](double) { return 4e-6; };
+  given.functions["EZY"] = [](double) { return -7e-6; };
+  for (const char* name : {"csv", "neutral-csv", "linuxcnc-grid"}) {
+    for (const char* structure : {testing::kTrunnion, testing::kMixed}) {
+      given.locations = {{"EX0C", 5e-6}, {"EB0C", 20e-6}};
+      given.locations[structure == testing::kTrunnion ? "EY0A" : "EX0B"] = 3e-6;
+      const FitResult result = testing::result_with(testing::rotary_machine(structure), given, 36);
+      const TableFormat& format = *find_table_format(name);
+      const TableFormatOptions options = loop_options({name, "L-VOL+R-VOL", structure});
+      sim::TruthMachine truth = true_machine(result);
+      const RotaryLeft before = left_on(truth, result.machine.tools.front().offset);
+      const MadeTables made = make_tables(format, result, options);
+      truth.set_correction(sim::command_correction({control_tables(format, made.files), 0.0, {}}));
+      const RotaryLeft after = left_on(truth, result.machine.tools.front().offset);
+      EXPECT_GT(before.rms, 8e-6) << name << " " << structure;
+      EXPECT_LT(after.max, 0.2e-6) << name << " " << structure;
+      ASSERT_TRUE(made.all_axes.has_value());
+      EXPECT_LT(made.all_axes->exported.max, 0.2e-6) << name << " " << structure;
+      EXPECT_NEAR(made.rotary_check->exported.max, 0.0, 0.2e-6) << name << " " << structure;
+    }
+  }
+}
+
 /// More types never leave more, and the tool's axis turns under R-POS alone, where the control turns axes.
 TEST(RotaryTablesOfMoreTypes, LeaveLess) {
   for (const char* name : {"neutral-csv", "linuxcnc-grid", "isg-csv"}) {

@@ -301,13 +301,33 @@ TEST(NativeTables, MetadataStatesMachineToolAndConditions) {
   EXPECT_EQ(read.machine.structure.code, machine.structure.code);
   EXPECT_EQ(read.tool, "side");
   ASSERT_EQ(read.machine.tools.size(), 2U);
-  EXPECT_LT((read.machine.tools[1].offset - machine.tools[1].offset).norm(), 1e-12);
+  for (const Tool& tool : read.machine.tools)
+    EXPECT_LT((tool.offset - machine.tools[*machine.tool_index(tool.name)].offset).norm(), 1e-12);
   EXPECT_LT((read.machine.axes[0].reference_point - machine.axes[0].reference_point).norm(), 1e-12);
   EXPECT_EQ(read.entries.at("load"), "none, table empty");
   EXPECT_EQ(read.entries.at("active_compensations"), "L-POS");
   EXPECT_EQ(read.entries.at("feed"), "not recorded");
   EXPECT_EQ(read.entries.at("identification.result"), "result");
   EXPECT_EQ(read.entries.at("specific_lines.x_mm"), "500");
+}
+
+/// What takes the first tool where none is named takes that of the tables, and the others stay in their
+/// order.
+TEST(NativeTables, TheToolOfTheTablesIsTheFirst) {
+  FitResult result = small_result();
+  result.machine.tools = {
+      {"short", {0.0, 0.0, -0.1}}, {"long", {0.0, 0.0, -0.2}}, {"angled", {0.1, 0.0, -0.1}}};
+  const auto names = [&](const std::string& tool) {
+    TableFormatOptions options;
+    options.tool = tool;
+    std::vector<std::string> found;
+    for (const Tool& read :
+         read_table_metadata({"metadata.csv", table_metadata_csv(result, options)}).machine.tools)
+      found.push_back(read.name);
+    return found;
+  };
+  EXPECT_THAT(names(""), ::testing::ElementsAre("short", "long", "angled"));
+  EXPECT_THAT(names("angled"), ::testing::ElementsAre("angled", "short", "long"));
 }
 
 TEST(NativeTables, ConditionsThatAreNotAskedForAreRefused) {

@@ -104,5 +104,22 @@ TEST(RotaryRank, AsksForTheLinearAxesWhereTheyFollowUnmeasured) {
   EXPECT_THAT(cause_exchangeable(model, "EX0C", {"EB0A"}).texts("remedies"), Not(Contains("linear-axes")));
 }
 
+/// A cradle that travels a radian farther than it was measured.
+TEST(RotaryRank, AsksForTheTravelThatWasNotMeasured) {
+  const sim::TruthMachine truth = five_axis_truth(five_axis_machine("w C' A' b X Y Z t"), {}, 5);
+  Campaign campaign = r_test_campaign(truth, GridPlan{}, 17);
+  const auto remedies = [&] {
+    const MeasurementModel model(campaign, resolve_knots(rotary_model_of(2), campaign));
+    return cause_exchangeable(model, "EBA", {"EB0A"}).texts("remedies");
+  };
+  Axis& cradle = *std::ranges::find(campaign.machine.axes, AxisName::A, &Axis::name);
+  const MeasuredRange measured = measured_range(campaign, AxisName::A);
+  cradle.travel_min = measured.min;
+  cradle.travel_max = measured.max;
+  EXPECT_THAT(remedies(), Not(Contains("measured-travel")));
+  cradle.travel_max += 1.0;
+  EXPECT_THAT(remedies(), Contains("measured-travel"));
+}
+
 }  // namespace
 }  // namespace volcal

@@ -94,6 +94,12 @@ const std::vector<WordedFinding>& examples() {
        "setup \"S1\" (s1.csv): its positions miss what the instrument allows by 310.4 mm, with b_deg "
        "reversed, "
        "c_deg in radians by 0.2 mm: if so add scale = { b_deg = -1, c_deg = 57.2957795131 }"},
+      {{FindingCode::ReadingsPositionsMisread,
+        {{"setup", "S1"}, {"file", "s1.csv"}, {"miss", FindingNumber{0.1053, "mm", 1e-3}}}},
+       "setup \"S1\" (s1.csv): with its tool the nominal tool point scatters by 105.3 mm where it stands at "
+       "one "
+       "sphere: are its positions those of the machine's axes (a control with tool centre point motion shows "
+       "others), is the tool the right one?"},
       {{FindingCode::ReadingsAnglesInRadians,
         {{"setup", "C"}, {"file", "c.csv"}, {"columns", Texts{"c_deg"}}}},
        "setup \"C\" (c.csv): c_deg holds whole degrees if it is in radians, and no round numbers of degrees: "
@@ -147,6 +153,13 @@ const std::vector<WordedFinding>& examples() {
        "uncertainties use the estimated value; is its noise stated in a unit 1000 times too small (nm for "
        "um)? check "
        "the noise table of its setups and the unit of the readings"},
+      {{FindingCode::NoiseSigmaContradicted,
+        {{"instrument", "r-test"}, {"times", FindingNumber{0.00102}}, {"too_quiet", true}}},
+       "r-test: its residuals scatter 0.00102 times as much as its stated sigma; weights and uncertainties "
+       "use the "
+       "estimated value; an instrument's readings hardly scatter so little: are they in a larger unit than "
+       "their "
+       "columns say (mm for um, then add scale = { COLUMN = 1000 } to its setups), or were they computed?"},
       {{FindingCode::NoiseSigmaContradicted,
         {{"instrument", "ball-bar"}, {"times", FindingNumber{5.0}}, {"hardly_noise", true}}},
        "ball-bar: its residuals scatter 5 times as much as its stated sigma; weights and uncertainties use "
@@ -250,6 +263,18 @@ const std::vector<WordedFinding>& examples() {
        "line) and add an instrument that holds position or direction over the whole travel (tracer, "
        "straightness, "
        "square)"},
+      {{FindingCode::NotVisibleExchangeable,
+        {{"error", "EBA"},
+         {"partners", Texts{"EB0A"}},
+         {"remedies", Texts{"measured-travel"}},
+         {"partly", "A"},
+         {"from", FindingNumber{-90.0 * kRadianPerDegree, "deg", kRadianPerDegree}},
+         {"to", FindingNumber{30.0 * kRadianPerDegree, "deg", kRadianPerDegree}},
+         {"travel_from", FindingNumber{-90.0 * kRadianPerDegree, "deg", kRadianPerDegree}},
+         {"travel_to", FindingNumber{90.0 * kRadianPerDegree, "deg", kRadianPerDegree}}}},
+       "EBA: not visible, a change of it can be exchanged with EB0A without changing any reading; measure A "
+       "over its "
+       "travel, -90 to 90 deg, or state in the machine file the -90 to 30 deg that were measured"},
       {{FindingCode::NotVisibleExchangeable,
         {{"error", "EAZ"}, {"partners", Texts{"EYZ"}}, {"remedies", Texts{"other-lines"}}}},
        "EAZ: not visible, a change of it can be exchanged with EYZ without changing any reading; add lines "
@@ -667,6 +692,11 @@ const std::vector<WordedFinding>& examples() {
        "their steps, as the errors of a worm, needs a finer --rotary-step; what depends on two axes at once "
        "is "
        "in grids of rotary axes alone"},
+      {{FindingCode::RotaryTablesOffIdeal,
+        {{"off", FindingNumber{12.3e-6, "um", 1e-6}}, {"constants", true}}},
+       "the constants of rotary axes are up to 12.30 um off what R-POR could correct: they say where the "
+       "axes are, "
+       "not how they are tilted, which grids of rotary axes hold"},
       {{FindingCode::TablesLeaveMore,
         {{"with", FindingNumber{4.26e-6, "um", 1e-6}}, {"without", FindingNumber{3.53e-6, "um", 1e-6}}}},
        "the machine errs by 4.26 um RMS with these tables and by 3.53 without: do not load them; take a "
@@ -676,6 +706,17 @@ const std::vector<WordedFinding>& examples() {
        "axis C moves in these readings, and the model has no errors of it: what they do is in the residuals, "
        "what they may be by their prior in the uncertainty of the model; identify them by volcal fit from "
        "readings that move C"},
+      {{FindingCode::RotaryErrorsNotInModel, {{"axis", "C"}, {"by_model", true}}},
+       "axis C moves in these readings, and the model file leaves out its errors: what they do is in the "
+       "residuals; "
+       "take default = { basis = \"zero\" } out of the model file, or name its functions and locations "
+       "there"},
+      {{FindingCode::RotaryErrorsNotInModel,
+        {{"axis", "C"}, {"by_model", true}, {"locations", Texts{"EX0C", "EY0C"}}}},
+       "axis C moves in these readings, and the model file leaves out its location errors EX0C, EY0C: what "
+       "they do "
+       "is in the residuals; add EX0C = 0.0 below [locations], or \"zero\" for each that is known to be "
+       "none"},
       {{FindingCode::RotaryErrorsNotInModel, {{"axis", "C"}}},
        "axis C moves in these readings, and the model has no errors of it: what they do is in the residuals; "
        "identify them by volcal fit from readings that move C"},

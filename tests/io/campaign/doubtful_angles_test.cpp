@@ -95,6 +95,23 @@ TEST(DoubtfulAngles, ASphereTellsRadians) {
       HasSubstr("with b_deg in radians and reversed by 0.0 mm: if so add scale = { b_deg = -57.29577951"));
 }
 
+/// Workpiece coordinates of a control with tool centre point motion stand still: 112 mm from the axis of C,
+/// 200 mm from that of B. Of contacts and diameters the tool point is not at one place.
+TEST(DoubtfulAngles, PositionsThatMissTheSphereWhateverTheAnglesAreTold) {
+  auto setup = poses("r-test");
+  for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
+    auto& column = setup.readings.position[index_of(axis)];
+    column.assign(column.size(), 0.1);
+  }
+  EXPECT_THAT(doubt_about(setup), HasSubstr("the nominal tool point scatters by 1"));
+  EXPECT_THAT(doubt_about(setup), HasSubstr("are its positions those of the machine's axes"));
+  auto diameters = setup;
+  diameters.instrument = "probed-sphere";
+  EXPECT_THAT(doubt_about(diameters), HasSubstr("the nominal tool point scatters"));
+  diameters.readings.value.resize(1);
+  EXPECT_EQ(doubt_about(diameters), "");
+}
+
 /// A bar of 150 mm along z above the place keeps its length: the same joints, 150 mm higher.
 TEST(DoubtfulAngles, ABarTellsItByItsLength) {
   auto setup = poses("ball-bar");

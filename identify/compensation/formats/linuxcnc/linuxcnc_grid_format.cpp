@@ -142,8 +142,7 @@ std::string kins_rotary(const FitResult& result, const TableFormatOptions& optio
       text += kins_own(sampled);
   }
   if (!shares.location && !shares.motion) return text;
-  for (const RotaryGrid& grid :
-       rotary_grids(result, conditions_of(result, options), grid_step(options), shares))
+  for (const RotaryGrid& grid : rotary_grids_to_correct(result, options, shares))
     text += kins_twists(grid, unit);
   return text;
 }

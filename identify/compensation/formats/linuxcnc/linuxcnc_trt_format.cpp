@@ -10,6 +10,7 @@
 
 #include "volcal/identify/compensation/compensation_tables.h"
 #include "volcal/identify/compensation/formats/linuxcnc/linuxcnc_units.h"
+#include "volcal/identify/compensation/rotary_tables.h"
 #include "volcal/identify/errors/rotary/identified_lines.h"
 #include "volcal/model/description/errors.h"
 
@@ -91,7 +92,7 @@ struct TrtMachine {
   Eigen::Vector3d moved = Eigen::Vector3d::Zero();  ///< the table at machine zero, and what is clamped on it
 };
 
-TrtMachine trt_machine(const FitResult& result) {
+TrtMachine trt_machine(const FitResult& result, const TableFormatOptions& options) {
   TrtMachine trt{required_trt_module(result.machine), {}, {}, {}};
   const Eigen::Vector3d centre_c = result.machine.axis(AxisName::C).centre;
   const Eigen::Vector3d centre_tilt = result.machine.axis(trt.module.tilt).centre;
@@ -100,6 +101,9 @@ TrtMachine trt_machine(const FitResult& result) {
     if (line.axis == AxisName::C) trt.moved = line.value.displacement;
     if (line.axis == trt.module.tilt) moved_tilt = line.value.displacement;
   }
+  const Eigen::Vector3d at_home = displacement_at_home(result, options);
+  trt.moved -= at_home;
+  moved_tilt -= at_home;
   trt.nominal = {centre_c, centre_tilt - centre_c};
   trt.actual = {centre_c + trt.moved, centre_tilt + moved_tilt - centre_c - trt.moved};
   return trt;
@@ -132,7 +136,8 @@ std::vector<TableFile> write_trt(const FitResult& result, const TableFormatOptio
   if (!options.type.has(CompensationPart::RotaryLocation)) return files;
   const Tool& tool = tool_of(result.machine, options);
   require_tool_along_spindle(tool);
-  files.push_back({std::string(kTrtFile), trt_hal(trt_machine(result), tool, linear_units_of(options))});
+  files.push_back(
+      {std::string(kTrtFile), trt_hal(trt_machine(result, options), tool, linear_units_of(options))});
   return files;
 }
 

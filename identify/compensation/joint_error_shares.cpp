@@ -1,4 +1,4 @@
-#include "volcal/identify/compensation/checks/joint_error_shares.h"
+#include "volcal/identify/compensation/joint_error_shares.h"
 
 namespace volcal {
 namespace {

@@ -10,7 +10,11 @@
 namespace volcal {
 namespace {
 
-bool starts_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+/// Letters outside ASCII as well: all bytes of them.
+bool starts_name(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte >= 0x80 || std::isalpha(byte) != 0 || c == '_';
+}
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool continues_name(char c) { return starts_name(c) || is_digit(c); }
 
@@ -68,8 +72,18 @@ void refuse_size(const std::string& text) {
   }
 }
 
+std::string name_characters() {
+  std::string all;
+  for (int byte = 1; byte < 256; ++byte) {
+    if (continues_name(static_cast<char>(byte))) all += static_cast<char>(byte);
+  }
+  return all;
+}
+
 mu::Parser parser_of(const std::string& text) {
+  static const std::string names = name_characters();
   mu::Parser parser;
+  parser.DefineNameChars(names.c_str());
   parser.DefineConst("pi", std::numbers::pi);
   parser.SetExpr(text);
   return parser;

@@ -149,6 +149,16 @@ TEST_F(Custom, ParametersOfTheShapeCanBeHeldOrEstimated) {
   EXPECT_EQ(effect->name().driver, "t");
 }
 
+/// A value that is estimated moves with the fit, and its effect stays the same one.
+TEST_F(Custom, AHeldValueIsPartOfItsName) {
+  EffectSpec spec = custom("tool z", "sin(t / p)");
+  spec.options.set("p", 30.0);
+  EXPECT_EQ(made(spec)->name().shape, "sin(t / p) with p=30");
+  EXPECT_EQ(made(spec)->amplitudes()[0].label, "tool z by sin(t / p) with p=30");
+  spec.options.set("p_sigma", 5.0);
+  EXPECT_EQ(made(spec)->name().shape, "sin(t / p)");
+}
+
 TEST_F(Custom, IsNeverLookedFor) { EXPECT_TRUE(find_effect("custom")->candidates(campaign_).empty()); }
 
 /// 10 urad per metre of z on EAY, seen by a level on the tool about x: 10 urad times z.
@@ -254,6 +264,14 @@ TEST_F(Custom, AChannelIsWrittenWithUnderscores) {
   }
   EXPECT_NEAR(driver(custom("EAY", "T_Air_top_2 - 20"), "S1", 2),
               view("S1").setup.readings.temperature.at("air")[2] - 20.0, 1e-12);
+}
+
+TEST_F(Custom, AChannelMayHaveLettersOutsideAscii) {
+  for (volcal::Setup& setup : campaign_.setups) {
+    setup.readings.temperature["Öl"] = setup.readings.temperature["air"];
+  }
+  EXPECT_NEAR(driver(custom("EAY", "2 * T_Öl - 20"), "S1", 2),
+              2.0 * view("S1").setup.readings.temperature.at("air")[2] - 20.0, 1e-12);
 }
 
 }  // namespace

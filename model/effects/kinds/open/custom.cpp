@@ -1,6 +1,8 @@
 // What a user writes: a target and a formula of what was recorded, its amplitude unknown.
 #include "volcal/model/effects/kinds/open/custom.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -150,12 +152,26 @@ class CustomFormula {
   std::vector<std::string> parameters_;
 };
 
+/// The expression with the values of parameters that are held, as in "sin(x / p) with p=30": another value is
+/// another effect. A value that is estimated moves, and tells none apart.
+std::string text_with_held(const CustomFormula& formula, const EffectTable& table) {
+  std::string text = formula.expression().text();
+  const char* before = " with ";
+  for (const std::string& parameter : formula.parameters()) {
+    if (table.number(parameter + "_sigma", 0.0) > 0.0) continue;
+    text += fmt::format("{}{}={}", before, parameter, table.number(parameter, 0.0));
+    before = " ";
+  }
+  return text;
+}
+
 std::unique_ptr<FormulaEffect> make_custom(const EffectTable& table) {
   const CustomFormula formula(table);
   const std::string& target = formula.target().text;
-  const std::string label = target + " by " + formula.expression().text();
+  const std::string text = text_with_held(formula, table);
+  const std::string label = target + " by " + text;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"custom", target, written_list(formula.variables()), formula.expression().text()},
+      EffectName{"custom", target, written_list(formula.variables()), text},
       std::vector<EffectAmplitude>{{.label = label,
                                     .target = formula.target().target(),
                                     .key = formula.target().amplitude_key("amplitude"),

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -118,16 +119,18 @@ std::vector<Family> families(const LinearModel& model, std::span<const EffectSpe
   return all;
 }
 
+/// Of several by one name the last one written.
 std::vector<Family> own_families(const LinearModel& model, std::span<const EffectSpec> own) {
   std::set<EffectName> present = effects_of(model);
   std::vector<Family> all;
-  for (const EffectSpec& spec : own) {
+  for (const EffectSpec& spec : own | std::views::reverse) {
     std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, {});
     if (!present.insert(effect->name()).second) continue;
     effect->check(model.campaign(), {});
     std::vector<Eigen::VectorXd> scan = effect->scan(model.campaign());
     all.push_back({spec, std::move(effect), std::nullopt, std::move(scan)});
   }
+  std::ranges::reverse(all);
   return all;
 }
 

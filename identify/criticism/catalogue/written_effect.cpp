@@ -165,4 +165,38 @@ WrittenEffect written_effect(const std::string& option, const std::string& text,
   return effect;
 }
 
+namespace {
+
+/// Whether an expression can be read and uses a name.
+bool uses(const std::string& option, const std::string& text, const std::string& name) {
+  try {
+    return custom_expression(parted(option, text).expression.text).uses(name);
+  } catch (const ExpressionError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+std::vector<WrittenEffect> written_effects(const std::string& option, const std::vector<std::string>& texts,
+                                           const std::vector<std::string>& parameters) {
+  std::vector<std::vector<std::string>> of_text(texts.size());
+  for (const std::string& each : parameters) {
+    const std::string name = parameter_of(each).name;
+    bool used = false;
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+      if (texts.size() > 1 && !uses(option, texts[i], name)) continue;
+      of_text[i].push_back(each);
+      used = true;
+    }
+    if (!used)
+      throw InputError({}, "--parameter " + each + ": no expression of " + option + " uses " + name,
+                       "leave it out, or write " + name + " into one of the expressions");
+  }
+  std::vector<WrittenEffect> effects;
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    effects.push_back(written_effect(option, texts[i], of_text[i]));
+  return effects;
+}
+
 }  // namespace volcal

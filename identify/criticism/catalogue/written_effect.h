@@ -40,5 +40,8 @@ EffectSpec written_surface(const std::string& option, const std::string& text);
 /// the text is wrong.
 WrittenEffect written_effect(const std::string& option, const std::string& text,
                              const std::vector<std::string>& parameters);
+/// Several of them. A parameter goes to those that use it; throws InputError where none does.
+std::vector<WrittenEffect> written_effects(const std::string& option, const std::vector<std::string>& texts,
+                                           const std::vector<std::string>& parameters);
 
 }  // namespace volcal

@@ -141,8 +141,8 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   for (const std::string& effect : arguments.separate) {
     options.planning.separate.push_back(named_effect("--separate", effect, campaign));
   }
-  for (const std::string& text : arguments.tried)
-    options.own.push_back(written_effect("--try", text, arguments.parameters).spec);
+  for (const WrittenEffect& tried : written_effects("--try", arguments.tried, arguments.parameters))
+    options.own.push_back(tried.spec);
   ModelSpec criticised = model;
   for (const std::string& text : arguments.laws) add_asked_laws(text, criticised, options);
   ProgressBar bar("diagnose");

@@ -118,7 +118,7 @@ void conclude_named(const Remarks& remarks, Diagnosis& diagnosis) {
 
 void conclude_unknown(Diagnosis& diagnosis) {
   diagnosis.verdict = Verdict::Unknown;
-  diagnosis.findings.push_back(unnamed(FindingCode::DiagnosisUnknown, diagnosis.unknown.front()));
+  diagnosis.findings.push_back(unnamed(diagnosis.unknown.front()));
   for (const auto* set : sets_of_alternatives(diagnosis))
     diagnosis.findings.push_back(alternatives(FindingCode::DiagnosisNearest, *set));
 }
@@ -225,5 +225,7 @@ void conclude(const Remarks& remarks, Diagnosis& diagnosis) {
   }
   add_remarks(remarks, diagnosis);
 }
+
+Finding unnamed(const UnknownFinding& unknown) { return unnamed(FindingCode::DiagnosisUnknown, unknown); }
 
 }  // namespace volcal

@@ -19,6 +19,8 @@ struct Remarks {
 };
 
 void conclude(const Remarks& remarks, Diagnosis& diagnosis);
+/// What is said of something without a name: "diagnosis.unknown".
+Finding unnamed(const UnknownFinding& unknown);
 /// What became of the effects that the user thought of; after the verdict and the confounding matrix.
 void conclude_tried(Diagnosis& diagnosis);
 

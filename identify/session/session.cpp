@@ -1,7 +1,10 @@
 #include "volcal/identify/session/session.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <span>
 #include <utility>
 
 #include "volcal/identify/criticism/data/effect_words.h"
@@ -17,6 +20,7 @@
 #include "volcal/identify/criticism/surface_findings.h"
 #include "volcal/identify/numeric/interruption.h"
 #include "volcal/identify/numeric/threads.h"
+#include "volcal/identify/session/hidden_effects.h"
 #include "volcal/identify/session/proposed_measurements.h"
 #include "volcal/identify/session/session_tree.h"
 #include "volcal/identify/statistics/normal.h"
@@ -98,6 +102,70 @@ double rms_of_heldout(const ModelState& state, const Eigen::VectorXd& residual) 
   return std::sqrt(squares / count);
 }
 
+EffectName name_of(const EffectSpec& spec) { return find_effect(spec.kind)->make(spec, {})->name(); }
+
+/// No test was made of it when it came into the model.
+void be_untested(EffectFinding& effect) {
+  effect.log10_p = effect.gain = effect.visible_fraction = std::numeric_limits<double>::quiet_NaN();
+}
+
+std::vector<EffectFinding> given_effects(const ModelSpec& model) {
+  std::vector<EffectFinding> effects;
+  for (const EffectSpec& spec : model.effects) {
+    const auto effect = find_effect(spec.kind)->make(spec, {});
+    EffectFinding& given = effects.emplace_back();
+    given.name = effect->name();
+    given.label = effect_label(*effect);
+    given.spec = spec;
+    be_untested(given);
+  }
+  return effects;
+}
+
+/// The given model with those of its effects that are listed, as they were given, and with the others.
+ModelSpec model_with(ModelSpec given, const Campaign& campaign, std::vector<EffectFinding> effects) {
+  std::erase_if(given.effects, [&](const EffectSpec& spec) {
+    const EffectName name = name_of(spec);
+    return std::erase_if(effects, [&](const EffectFinding& effect) { return effect.name == name; }) == 0;
+  });
+  return extended_model(std::move(given), campaign, effects);
+}
+
+void require_not_in_model(const std::vector<EffectFinding>& effects, const EffectName& name) {
+  const auto known = std::ranges::find(effects, name, &EffectFinding::name);
+  if (known == effects.end()) return;
+  throw InputError({}, "the model has " + known->label + " already",
+                   "take it out first; a second one with a parameter that is estimated is written with "
+                   "another letter, q in place of p");
+}
+
+bool have_same_values(const EffectSpec& one, const EffectSpec& other) {
+  constexpr std::array kValues = {"p", "p_sigma", "q", "q_sigma"};
+  return std::ranges::all_of(
+      kValues, [&](const char* key) { return one.options.number(key) == other.options.number(key); });
+}
+
+/// Parameters that the readings in use determine, and no fewer readings than these and one.
+void require_readings(const Session& session, const std::vector<bool>& selected) {
+  const FitResult& result = session.fitted_result();
+  const std::vector<double>& sigma = session.linear().problem().data.sigma;
+  std::size_t before = 0, remaining = 0;
+  for (std::size_t i = 0; i < sigma.size(); ++i) {
+    if (!std::isfinite(sigma[i])) continue;
+    ++before;
+    if (i >= selected.size() || !selected[i]) ++remaining;
+  }
+  const double parameters = std::max(0.0, static_cast<double>(before) - result.dof);
+  if (static_cast<double>(remaining) > parameters) return;
+  const std::string what = remaining == 0   ? "no reading would remain"
+                           : remaining == 1 ? "1 reading would remain"
+                                            : std::to_string(remaining) + " readings would remain";
+  throw InputError({},
+                   what + ", and this model needs more than " +
+                       std::to_string(static_cast<long long>(std::ceil(parameters))),
+                   "leave out fewer readings, or begin with a model of fewer errors");
+}
+
 /// Marks observations as left out. The number of those that were not yet.
 std::size_t leave_out(const LinearModel& model, const std::vector<bool>& selected, const std::string& reason,
                       Campaign& campaign) {
@@ -124,27 +192,46 @@ Session::Session(Campaign campaign, ModelSpec model, SessionOptions options)
   options_.threads = thread_count(options_.threads);
   const auto shared = std::make_shared<const Campaign>(std::move(campaign));
   const SessionWork load = interruptible([this, shared](const SessionProgress& progress) {
-    return appending(0, fitting()(shared, given_, progress), {}, "");
+    return appending(0, fitting(shared)(shared, given_, progress), given_effects(given_), "");
   });
   load(options_.progress)(*this);
 }
 
 Session::~Session() = default;
 
-Session::Fitting Session::fitting() const {
+namespace {
+
+constexpr auto readings_of = [](const auto& fitted) { return fitted->campaign(); };
+
+}  // namespace
+
+Session::Fitting Session::fitting(const std::shared_ptr<const Campaign>& campaign) const {
   std::vector<Recipe> before;
   for (const auto& node : nodes_) before.push_back(node->recipe);
+  const auto least = std::ranges::find(least_, campaign, readings_of);
   return {options_, own_, std::move(before),
-          least_ ? least_->noise_variance() : std::numeric_limits<double>::max()};
+          least != least_.end() ? (*least)->noise_variance() : std::numeric_limits<double>::max()};
+}
+
+/// Of the least noise at the readings of a model.
+const std::shared_ptr<const Session::Fitted>& Session::least_of(const Recipe& recipe) const {
+  return *std::ranges::find(least_, recipe.base->campaign(), readings_of);
 }
 
 /// Noise that was estimated without an effect holds part of it and hides its fall, so that all models are
-/// told against the least noise that a full fit has found.
+/// told against the least noise that a full fit of the same readings has found.
 void Session::put_in_place(const FittedModel& found) {
-  if (least_ && found.fitted->noise_variance() >= least_->noise_variance()) return;
-  least_ = found.fitted;
-  for (std::size_t i = 0; i < std::min(found.figures.size(), models_.size()); ++i)
-    set_figures(found.figures[i], models_[i]);
+  const auto known = std::ranges::find(least_, found.fitted->campaign(), readings_of);
+  if (known == least_.end()) {
+    least_.push_back(found.fitted);
+  } else if (found.fitted->noise_variance() < (*known)->noise_variance()) {
+    *known = found.fitted;
+  } else {
+    return;
+  }
+  for (std::size_t i = 0; i < std::min(found.figures.size(), models_.size()); ++i) {
+    if (found.figures[i]) set_figures(*found.figures[i], models_[i]);
+  }
 }
 
 /// Another model is the current one. Of those that were looked at longest ago nothing stays that can be made
@@ -213,6 +300,7 @@ const SessionModel& Session::append(std::size_t parent, std::unique_ptr<Node> ma
   describe(*made, shown);
   nodes_.push_back(std::move(made));
   models_.push_back(std::move(shown));
+  visited_.clear();
   undone_.clear();
   go(models_.size() - 1);
   return models_.back();
@@ -229,12 +317,13 @@ SessionChange Session::appending(std::size_t parent, FittedModel found, std::vec
 
 void Session::describe(Node& made, SessionModel& shown) {
   const KeptFigures& figures = figures_of(made.recipe);
-  if (made.recipe.base == least_ && !made.recipe.refit) {
+  const auto& least = least_of(made.recipe);
+  if (made.recipe.base == least && !made.recipe.refit) {
     set_figures(figures.last_step(made.state(), made.state().projector()), shown);
   } else {
-    if (made.least != least_) {
-      made.at_least = made.recipe.projector_at(*least_, made.state());
-      made.least = least_;
+    if (made.least != least) {
+      made.at_least = made.recipe.projector_at(*least, made.state());
+      made.least = least;
     }
     set_figures(figures.last_step(made.state(), *made.at_least), shown);
   }
@@ -248,12 +337,13 @@ void Session::describe(Node& made, SessionModel& shown) {
 
 /// Of the recipe's model without added effects, against the least noise.
 const KeptFigures& Session::figures_of(const Recipe& recipe) {
+  const auto& least = least_of(recipe);
   const auto known =
-      std::ranges::find_if(kept_figures_, [&](const auto& each) { return each->is_of(recipe, least_); });
+      std::ranges::find_if(kept_figures_, [&](const auto& each) { return each->is_of(recipe, least); });
   auto found = known != kept_figures_.end() ? *known : nullptr;
   std::erase(kept_figures_, found);
   if (kept_figures_.size() >= kKeptFigures) kept_figures_.pop_back();
-  if (!found) found = FiguresOfModel::of(recipe, least_);
+  if (!found) found = FiguresOfModel::of(recipe, least);
   kept_figures_.insert(kept_figures_.begin(), found);
   return found->figures;
 }
@@ -316,20 +406,36 @@ const ModelState& Session::scanned() {
   return *node().scanned;
 }
 
+/// The last of a name: of a formula that was written again with other values the one that is asked for now.
 const FamilyTest& Session::test_of(const EffectName& effect) {
   const std::vector<FamilyTest>& all = tests();
-  for (const FamilyTest& test : all) {
-    const Family& family = node().state().setting().families[test.family];
-    if (family.effect && family.name() == effect && !node().state().has(test.family)) return test;
+  for (std::size_t i = all.size(); i-- > 0;) {
+    const Family& family = node().state().setting().families[all[i].family];
+    if (family.effect && family.name() == effect && !node().state().has(all[i].family)) return all[i];
   }
   throw std::invalid_argument(full_name(effect) + " is no effect that can be added to this model");
 }
+
+namespace {
+
+/// Whether a formula was written again, by the same name with other values.
+bool is_written_again(const SearchSetting& setting, std::size_t family) {
+  const std::size_t listed = setting.families.size() - setting.own;
+  if (family < listed) return false;
+  const EffectName name = setting.families[family].name();
+  return std::any_of(setting.families.begin() + static_cast<std::ptrdiff_t>(family) + 1,
+                     setting.families.end(), [&](const Family& later) { return later.name() == name; });
+}
+
+}  // namespace
 
 /// What shows and is not in the model, best first.
 std::vector<const FamilyTest*> Session::ranked() {
   std::vector<const FamilyTest*> order;
   for (const FamilyTest& test : tests()) {
-    if (test.score.dof > 0 && !node().state().has(test.family)) order.push_back(&test);
+    if (test.score.dof > 0 && !node().state().has(test.family) &&
+        !is_written_again(*node().recipe.setting, test.family))
+      order.push_back(&test);
   }
   sort_by_gain(order);
   return order;
@@ -349,9 +455,25 @@ const std::vector<EffectFinding>& Session::rank() {
 std::vector<EffectFinding> Session::not_visible() {
   std::vector<EffectFinding> hidden;
   for (const FamilyTest& test : tests()) {
-    if (test.score.dof == 0) hidden.push_back(finding(node().state().setting(), test));
+    if (test.score.dof == 0 && !node().state().has(test.family) &&
+        !is_written_again(*node().recipe.setting, test.family))
+      hidden.push_back(finding(node().state().setting(), test));
   }
   return hidden;
+}
+
+std::vector<Explanation> Session::why_not_visible(const std::vector<EffectFinding>& effects) {
+  std::map<EffectName, Explanation>& known = node().why_not_visible;
+  std::vector<const FamilyTest*> asked;
+  for (const EffectFinding& effect : effects) {
+    if (!known.contains(effect.name)) asked.push_back(&test_of(effect.name));
+  }
+  const std::vector<Explanation> found = why_hidden(node().state(), asked);
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    known[node().recipe.setting->families[asked[i]->family].name()] = found[i];
+  std::vector<Explanation> all;
+  for (const EffectFinding& effect : effects) all.push_back(known.at(effect.name));
+  return all;
 }
 
 Rivalry Session::rivals(std::size_t most) {
@@ -463,14 +585,33 @@ EffectPreview Session::formula(const EffectSpec& custom) {
   const EffectKind* kind = find_effect(custom.kind);
   if (kind == nullptr) throw std::invalid_argument(custom.kind + " is no kind of effect");
   const auto effect = kind->make(custom, {});
-  effect->check(campaign(), {});
-  tests();  // so that the new one is tested after the others, whatever was asked before
   const EffectName name = effect->name();
-  const auto is_it = [&](const EffectSpec& spec) {
-    return find_effect(spec.kind)->make(spec, {})->name() == name;
-  };
-  if (std::ranges::none_of(own_, is_it)) own_.push_back(custom);
+  effect->check(campaign(), {});
+  require_not_in_model(node().effects, name);
+  require_drivers(custom, *effect);
+  tests();  // so that the new one is tested after the others, whatever was asked before
+  const auto last =
+      std::find_if(own_.rbegin(), own_.rend(), [&](const EffectSpec& spec) { return name_of(spec) == name; });
+  if (last != own_.rend() && have_same_values(*last, custom)) return preview(name);
+  own_.push_back(custom);
+  try {
+    renew_setting();
+  } catch (...) {
+    own_.pop_back();
+    throw;
+  }
   return preview(name);
+}
+
+/// Throws InputError where they are not finite, or so large that their products are not.
+void Session::require_drivers(const EffectSpec& custom, const Effect& effect) const {
+  const Eigen::VectorXd sigma = this->sigma(current_);
+  const std::vector<Family> written = own_families(linear(), std::span(&custom, 1));
+  const Eigen::MatrixXd columns = family_columns(linear(), written.front(), effect.shape_values());
+  const double squares = (columns.array().colwise() / sigma.array()).square().sum();
+  if (!std::isfinite(squares * squares))
+    throw InputError({}, effect_label(effect) + " moves the readings by more than can be computed",
+                     "write it with smaller numbers, about 1 where it acts most");
 }
 
 SelectionSummary Session::summary(const std::vector<bool>& selected) const {
@@ -513,11 +654,11 @@ SessionWork Session::preparation() {
     const Family& family = setting.families[test->family];
     if (!family.effect) continue;
     std::shared_ptr<const Node> next = node_with(*test);
-    next->shared_refit(least_);
+    next->shared_refit(least_of(next->recipe));
     ahead.emplace(family.name(), std::move(next));
   }
   node().prepared = ahead;
-  return interruptible([ahead = std::move(ahead), least = least_, base = node().recipe.base,
+  return interruptible([ahead = std::move(ahead), least = least_of(node().recipe), base = node().recipe.base,
                         setting = node().recipe.setting,
                         number = current_](const SessionProgress& progress) -> SessionChange {
     double done = 0.0;
@@ -538,6 +679,11 @@ bool Session::is_prepared() const { return node().is_prepared; }
 
 const SessionModel& Session::add(const EffectName& effect) {
   const FamilyTest& test = test_of(effect);
+  if (test.score.dof == 0) {
+    const EffectFinding hidden = finding(*node().recipe.setting, test);
+    const Explanation why = why_not_visible({hidden}).front();
+    throw InputError({}, hidden.label + " is not visible: " + why.reason, why.remedy);
+  }
   const std::string change = "+ " + node().recipe.setting->families[test.family].label();
   return append(current_, std::make_unique<Node>(*node_with(test)), change, ModelStanding::Preview);
 }
@@ -546,7 +692,7 @@ const SessionModel& Session::add(const EffectName& effect) {
 std::size_t Session::place_of(const EffectName& effect) const {
   const std::vector<EffectFinding>& effects = node().effects;
   const auto found = std::ranges::find(effects, effect, &EffectFinding::name);
-  if (found == effects.end()) throw std::invalid_argument(full_name(effect) + " was not added to this model");
+  if (found == effects.end()) throw std::invalid_argument(full_name(effect) + " is not in this model");
   return static_cast<std::size_t>(found - effects.begin());
 }
 
@@ -565,11 +711,15 @@ const SessionModel& Session::remove_preview(const EffectName& effect) {
   return append(current_, std::move(next), "- " + here.effects[place].label, standing);
 }
 
-/// A full fit of the given model with these effects.
+bool Session::was_given(const EffectName& effect) const {
+  return std::ranges::any_of(given_.effects, [&](const EffectSpec& spec) { return name_of(spec) == effect; });
+}
+
+/// A full fit with these effects, those of the given model among them.
 SessionWork Session::fit_of(const std::shared_ptr<const Campaign>& campaign,
                             const std::vector<EffectFinding>& effects, const std::string& change) const {
-  const ModelSpec model = extended_model(given_, *campaign, effects);
-  return interruptible([=, fit_it = fitting(), parent = current_](const SessionProgress& progress) {
+  const ModelSpec model = model_with(given_, *campaign, effects);
+  return interruptible([=, fit_it = fitting(campaign), parent = current_](const SessionProgress& progress) {
     return appending(parent, fit_it(campaign, model, progress), effects, change);
   });
 }
@@ -582,8 +732,8 @@ SessionWork Session::removal(const EffectName& effect) const {
 
 SessionWork Session::confirmation(std::size_t number) const {
   const auto campaign = nodes_.at(number)->recipe.base->campaign();
-  return interruptible([fit_it = fitting(), campaign,
-                        model = extended_model(given_, *campaign, models_[number].effects),
+  return interruptible([fit_it = fitting(campaign), campaign,
+                        model = model_with(given_, *campaign, models_[number].effects),
                         number](const SessionProgress& progress) -> SessionChange {
     const FittedModel found = fit_it(campaign, model, progress);
     return [found, number](Session& session) {
@@ -605,7 +755,7 @@ SessionWork Session::confirmation(std::size_t number) const {
 SessionWork Session::refit(std::size_t number) const {
   const Node& of = *nodes_.at(number);
   return interruptible([base = of.recipe.base, changes = !of.recipe.added.empty(),
-                        refit = of.shared_refit(least_),
+                        refit = of.shared_refit(least_of(of.recipe)),
                         number](const SessionProgress& progress) -> SessionChange {
     if (!changes) return [](Session&) {};
     report(progress, "noise with what was added", 0.1);
@@ -665,6 +815,7 @@ SessionWork Session::surface(const EffectName& name) const {
   added.name = found->name;
   added.label = found->label;
   added.spec = found->spec;
+  be_untested(added);
   return fit_of(node().recipe.base->campaign(), with(current().effects, std::move(added)),
                 "+ " + found->label);
 }
@@ -673,6 +824,7 @@ SessionWork Session::leaving_out(const std::vector<bool>& selected, const std::s
   auto campaign = std::make_shared<Campaign>(this->campaign());
   const std::size_t count = leave_out(linear(), selected, reason, *campaign);
   if (count == 0) throw std::invalid_argument("no reading is marked that is not left out already");
+  require_readings(*this, selected);
   return fit_of(campaign, current().effects,
                 "- " + std::to_string(count) + (count == 1 ? " reading: " : " readings: ") + reason);
 }
@@ -694,7 +846,7 @@ SessionWork Session::climb() const {
   options.climb = true;
   options.own = own_;
   options.figures = options.compare = false;
-  return interruptible([diagnosis = diagnosis(options), fit_it = fitting(),
+  return interruptible([diagnosis = diagnosis(options), fit_it = fitting(node().recipe.base->campaign()),
                         campaign = node().recipe.base->campaign(), given = given_,
                         effects = current().effects,
                         parent = current_](const SessionProgress& progress) -> SessionChange {
@@ -712,7 +864,7 @@ SessionWork Session::climb() const {
         return !progress || progress(found[i].label + ": " + stage, from);
       };
       all.push_back(found[i]);
-      const FittedModel made = fit_next(campaign, extended_model(given, *campaign, all), part);
+      const FittedModel made = fit_next(campaign, model_with(given, *campaign, all), part);
       fit_next.before.push_back({made.fitted, made.fitted->setting(), {}});
       fit_next.least_variance = std::min(fit_next.least_variance, made.fitted->noise_variance());
       changes.push_back(
@@ -731,15 +883,22 @@ const SessionModel& Session::take(const SessionWork& work, const SessionProgress
   return current();
 }
 
+/// Back from a model that was gone to, else from what was made to what it was made of.
 bool Session::undo() {
-  if (!current().parent) return false;
+  if (!can_undo()) return false;
   undone_.push_back(current_);
-  go(*current().parent);
+  if (visited_.empty()) {
+    go(*current().parent);
+  } else {
+    go(visited_.back());
+    visited_.pop_back();
+  }
   return true;
 }
 
 bool Session::redo() {
   if (undone_.empty()) return false;
+  visited_.push_back(current_);
   go(undone_.back());
   undone_.pop_back();
   return true;
@@ -747,11 +906,11 @@ bool Session::redo() {
 
 const SessionModel& Session::go_to(std::size_t number) {
   const SessionModel& wanted = models_.at(number);
+  if (number != current_) visited_.push_back(current_);
   go(number);
-  undone_.clear();
   return wanted;
 }
 
-ModelSpec Session::model() const { return extended_model(given_, campaign(), current().effects); }
+ModelSpec Session::model() const { return model_with(given_, campaign(), current().effects); }
 
 }  // namespace volcal

@@ -35,6 +35,7 @@
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/search/model_state.h"
 #include "volcal/identify/result/result.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/campaign.h"
 
 namespace volcal {
@@ -95,9 +96,10 @@ struct SessionModel {
   std::string change;                 ///< "+ reversal EXX", "- ECX by z"; empty for the first
   ModelStanding standing = ModelStanding::Fitted;
   std::optional<Contradiction> contradiction = {};
-  LadderStep figures =
-      {};  ///< on fitted and on held-out readings, against the least noise of a full fit so far
-  std::vector<EffectFinding> effects = {};  ///< added to the given model, with their amplitudes in this one
+  /// On fitted and on held-out readings, against the least noise of a full fit of the same readings so far.
+  LadderStep figures = {};
+  /// With their amplitudes in this model: those of the given model that it has, then those that were added.
+  std::vector<EffectFinding> effects = {};
 };
 
 /// What an effect would be if it were added to the current model.
@@ -134,7 +136,7 @@ class Session {
   /// All models, in the order in which they were made.
   const std::vector<SessionModel>& models() const;
   const SessionModel& current() const;
-  bool can_undo() const { return current().parent.has_value(); }
+  bool can_undo() const { return !visited_.empty() || current().parent.has_value(); }
   bool can_redo() const { return !undone_.empty(); }
   /// Observations of the linear model: setup, row, channel order.
   const LinearModel& linear() const;
@@ -163,6 +165,9 @@ class Session {
   std::function<void()> testing();
   /// Effects of which nothing shows.
   std::vector<EffectFinding> not_visible();
+  /// Why the readings do not tell these effects of the current model from it, and what to measure. Throws
+  /// std::invalid_argument where there is no such effect.
+  std::vector<Explanation> why_not_visible(const std::vector<EffectFinding>& effects);
   /// Of the first of the ranking, at most `most`.
   Rivalry rivals(std::size_t most);
   /// The scans of the current model without a catalogue and what to measure next, which unknown() and
@@ -179,20 +184,24 @@ class Session {
   /// What an effect would move the readings by per unit of its amplitude, added up over its amplitudes.
   Eigen::VectorXd driver(const EffectName& effect);
   /// An effect of the kind `custom` as the user writes it, tested beside the catalogue; from here on it can
-  /// be added by its name. Throws InputError where it cannot be read or cannot act.
+  /// be added by its name, which is that of the last one of this name. Throws InputError where it cannot be
+  /// read, cannot act or is in the model: it is then forgotten.
   EffectPreview formula(const EffectSpec& custom);
   /// Marked observations.
   SelectionSummary summary(const std::vector<bool>& selected) const;
 
   /// A linear preview with a further effect becomes the current model. Throws std::invalid_argument where
-  /// there is no such effect.
+  /// there is no such effect, InputError where the readings do not tell it from the model.
   const SessionModel& add(const EffectName& effect);
+  /// Whether an effect is of the model that the session began with.
+  bool was_given(const EffectName& effect) const;
   /// Whether an effect was added since the last full fit: it can be removed at once.
   bool is_preview(const EffectName& effect) const;
   /// A linear preview without it. Throws std::invalid_argument where it is_preview() not.
   const SessionModel& remove_preview(const EffectName& effect);
 
-  /// A full fit without an effect that was added. Throws std::invalid_argument where there is no such effect.
+  /// A full fit without an effect of the current model. Throws std::invalid_argument where there is no such
+  /// effect.
   SessionWork removal(const EffectName& effect) const;
   /// A linear preview with its noise and smoothing found again, shapes of its effects moved to where readings
   /// want them, and residuals of the exact model; 0.25 s of processor time at 6,720 readings. Nothing changes
@@ -218,7 +227,7 @@ class Session {
   /// A full fit with a surface that was drawn. Throws std::invalid_argument where there is no such surface.
   SessionWork surface(const EffectName& name) const;
   /// A full fit without these observations: another campaign. Throws std::invalid_argument where none are
-  /// marked.
+  /// marked, InputError where no more remain than the model has parameters that readings determine.
   SessionWork leaving_out(const std::vector<bool>& selected, const std::string& reason) const;
   /// What a diagnosis says of the current model: by the full fit that is there, or by one that is made for
   /// it. `options`: its threads, share of held-out lines and progress are the session's.
@@ -229,7 +238,7 @@ class Session {
   /// Runs the work here and takes what it found.
   const SessionModel& take(const SessionWork& work, const SessionProgress& progress = {});
 
-  /// To the model before, and back. False: there is none.
+  /// To the model before, after go_to() the one that was left, and back. False: there is none.
   bool undo();
   bool redo();
   /// Throws std::out_of_range.
@@ -250,14 +259,16 @@ class Session {
   struct FittedModel;
   struct FiguresOfModel;
 
-  Fitting fitting() const;
+  Fitting fitting(const std::shared_ptr<const Campaign>& campaign) const;
   static RefittedModel refitted(const Recipe& preview, const ModelState& state,
                                 const SessionProgress& progress);
+  const std::shared_ptr<const Fitted>& least_of(const Recipe& recipe) const;
   void put_in_place(const FittedModel& fitted);
   static void set_figures(LadderStep figures, SessionModel& shown);
   Node& node() const { return *nodes_[current_]; }
   void go(std::size_t number);
   void renew_setting();
+  void require_drivers(const EffectSpec& custom, const Effect& effect) const;
   const std::vector<FamilyTest>& tests();
   const ModelState& scanned();
   Eigen::VectorXd previewed_residual(const FamilyTest& test);
@@ -280,8 +291,10 @@ class Session {
   std::vector<EffectSpec> own_;
   std::vector<std::unique_ptr<Node>> nodes_;
   std::vector<SessionModel> models_;
-  std::shared_ptr<const Fitted> least_;  ///< of the least noise
+  std::vector<std::shared_ptr<const Fitted>> least_;  ///< of the least noise, one for each set of readings
   std::size_t current_ = 0;
+  std::vector<std::size_t>
+      visited_;  ///< models that were left since the last one was made, the last one last
   std::vector<std::size_t> undone_;
   std::vector<std::size_t> recent_;  ///< models, the last one first
   /// Of the models without added effects that were described last; at most kKeptFigures.

@@ -112,10 +112,9 @@ bool Session::Fitted::is_kept() const {
 }
 
 EffectFinding Session::Fitted::fitted(const EffectFinding& added) const {
-  EffectFinding out;
-  out.name = added.name;
-  out.label = added.label;
-  out.spec = added.spec;
+  EffectFinding out = added;  // with p, gain and visible share of when it was added
+  out.amplitudes.clear();
+  out.shape_text.clear();
   const auto projector = projector_of_all_readings();
   const DatumSpace datum(result_.layout, campaign_->machine, result_.parameters);
   for (const EffectSpec& spec : result_.identified.effects) {
@@ -238,6 +237,7 @@ void Session::Node::becomes(Recipe other) {
   recipe = std::move(other);
   tests = std::make_shared<SharedTests>([own = recipe] { return CatalogueTests(own.make()); });
   ranking.reset();
+  why_not_visible.clear();
   unknown.reset();
   drawn.clear();
   residual.reset();
@@ -259,10 +259,12 @@ const ModelState& Session::Node::state() const {
 }
 
 void Session::Node::with_setting(std::shared_ptr<const SearchSetting> setting) {
-  state_ = state().with_setting(setting);
+  ModelState next = state().with_setting(setting);
+  tests = std::make_shared<SharedTests>(tests->get().with_more(next));  // may throw: nothing is changed then
+  state_ = std::move(next);
   recipe.setting = std::move(setting);
-  tests = std::make_shared<SharedTests>(tests->get().with_more(*state_));
   ranking.reset();
+  why_not_visible.clear();
   forget_prepared();
   refit_.reset();
 }
@@ -322,18 +324,21 @@ void Session::Node::let_go() {
   all_readings.reset();
 }
 
-/// Of the models before. Those that stand on one fit share its projector.
-std::vector<LadderStep> Session::Fitting::figures_at(const std::vector<NoiseParameters>& noise) const {
+/// Of the models before that have the same readings. Those that stand on one fit share its projector.
+std::vector<std::optional<LadderStep>> Session::Fitting::figures_at(const Fitted& least) const {
+  const std::vector<NoiseParameters>& noise = least.noise();
   std::map<std::pair<const Fitted*, const Refit*>, std::shared_ptr<const Projector>> of_fits;
-  std::vector<LadderStep> figures;
-  for (const Recipe& recipe : before) {
+  std::vector<std::optional<LadderStep>> figures(before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Recipe& recipe = before[i];
+    if (recipe.base->campaign() != least.campaign()) continue;
     const bool was_kept = recipe.base->is_kept();
     const ModelState state = recipe.make();
     std::shared_ptr<const Projector>& of_fit = of_fits[{recipe.base.get(), recipe.refit.get()}];
     if (!of_fit) of_fit = recipe.without_effects().projector_at(noise);
     Projector projector = *of_fit;
     for (const AddedEffect& added : state.added()) projector.accept(added.columns);
-    figures.push_back(last_step_at(state, noise, projector));
+    figures[i] = last_step_at(state, noise, projector);
     if (!was_kept) recipe.base->let_go();
   }
   return figures;
@@ -350,8 +355,8 @@ Session::FittedModel Session::Fitting::operator()(const std::shared_ptr<const Ca
   auto fitted =
       std::make_shared<const Fitted>(campaign, std::move(result), ModelState(linear, std::move(setting)));
   tell(progress, "models against this noise", kShareOfNoise);
-  std::vector<LadderStep> figures;
-  if (fitted->noise_variance() < least_variance) figures = figures_at(fitted->noise());
+  std::vector<std::optional<LadderStep>> figures;
+  if (fitted->noise_variance() < least_variance) figures = figures_at(*fitted);
   tell(progress, "done", 1.0);
   return {std::move(fitted), std::move(figures)};
 }

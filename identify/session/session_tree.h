@@ -148,9 +148,10 @@ class Session::SharedTests {
 /// What stands behind a model of the tree.
 struct Session::Node {
   Recipe recipe;
-  std::vector<EffectFinding> effects;  ///< added to the given model
+  std::vector<EffectFinding> effects;  ///< of the given model, then those that were added
   std::shared_ptr<SharedTests> tests;
   std::optional<std::vector<EffectFinding>> ranking;
+  std::map<EffectName, Explanation> why_not_visible;   ///< as far as it was asked for
   std::optional<ModelState> scanned;                   ///< the state with all tests, once asked for
   std::optional<std::vector<UnknownFinding>> unknown;  ///< of that
   bool unknown_leads = false;
@@ -187,10 +188,11 @@ struct Session::Node {
   mutable std::shared_ptr<SharedRefit> refit_;
 };
 
-/// A fit, and where its noise is the least so far the figures of the models before against that noise.
+/// A fit, and where its noise is the least so far the figures of the models before against that noise: of
+/// those of the same readings.
 struct Session::FittedModel {
   std::shared_ptr<const Fitted> fitted;
-  std::vector<LadderStep> figures;
+  std::vector<std::optional<LadderStep>> figures;
 };
 
 /// What full fits need, apart from the session.
@@ -198,9 +200,9 @@ struct Session::Fitting {
   SessionOptions options;
   std::vector<EffectSpec> own;
   std::vector<Recipe> before;  ///< models of the tree
-  double least_variance;       ///< of these
+  double least_variance;       ///< of those of the same readings
 
-  std::vector<LadderStep> figures_at(const std::vector<NoiseParameters>& noise) const;
+  std::vector<std::optional<LadderStep>> figures_at(const Fitted& least) const;
   FittedModel operator()(const std::shared_ptr<const Campaign>& campaign, const ModelSpec& model,
                          const SessionProgress& progress) const;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -26,9 +28,10 @@
 namespace volcal::workbench {
 namespace {
 
-constexpr std::size_t kCompared = 12;  // suspects whose fall and rivals are told
-constexpr std::size_t kListed = 80;    // suspects
-constexpr std::size_t kHidden = 60;    // effects of which nothing shows
+constexpr std::size_t kCompared = 12;                   // suspects whose fall and rivals are told
+constexpr std::size_t kListed = 80;                     // suspects
+constexpr std::size_t kHidden = 60;                     // effects of which nothing shows
+constexpr std::size_t kProductsAtOnce = 2'000'000'000;  // a second of a processor
 constexpr std::size_t kFrequencies = 1200;
 constexpr double kWavesPerRange = 300.0;  // finest of the periodogram
 constexpr double kPeriodogramRisk = 0.01;
@@ -98,8 +101,14 @@ Json all_cosines_json(Session& session, const EffectPreview& preview, const Eige
   return rivals;
 }
 
-Json preview_json(const Session& session, const EffectPreview& preview) {
+std::string remedy_text(const Explanation& why) {
+  return "The readings do not show it: " + why.reason + "; " + why.remedy + ".";
+}
+
+Json preview_json(Session& session, const EffectPreview& preview) {
   Json suspect = effect_json(preview.effect);
+  if (preview.effect.dof == 0)
+    suspect["remedy"] = remedy_text(session.why_not_visible({preview.effect}).front());
   suspect["fall"] = fall_json(session, preview.rms_heldout);
   return {{"model", session.current().number}, {"effect", std::move(suspect)}};
 }
@@ -115,9 +124,12 @@ std::pair<double, double> range_of(const Eigen::VectorXd& values) {
   return low > high ? std::pair{0.0, 0.0} : std::pair{low, high};
 }
 
-/// Letters, digits and underscores that end at a place.
+/// Letters, those outside ASCII as well, digits and underscores that end at a place.
 std::size_t word_begin(const std::string& text, std::size_t at) {
-  const auto belongs = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  const auto belongs = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte >= 0x80 || std::isalnum(byte) != 0 || c == '_';
+  };
   std::size_t begin = std::min(at, text.size());
   while (begin > 0 && belongs(text[begin - 1])) --begin;
   return begin;
@@ -202,12 +214,23 @@ Json circle_json(const CircleTest& now, const CircleTest& before) {
           {"G_predicted_um", deviation(now.figures.model)}};
 }
 
+/// Since the last full fit, which does not hold them.
 std::vector<EffectFinding> added_since_fit(const Session& session) {
   std::vector<EffectFinding> added;
   for (const EffectFinding& effect : session.current().effects) {
     if (session.is_preview(effect.name)) added.push_back(effect);
   }
   return added;
+}
+
+/// Whether a cause is an effect that was added in this session.
+bool was_added(const Session& session, const std::string& cause) {
+  return std::ranges::any_of(session.current().effects, [&](const EffectFinding& effect) {
+    const bool named =
+        effect.label == cause ||
+        std::ranges::find(effect.amplitudes, cause, &AmplitudeFigure::label) != effect.amplitudes.end();
+    return named && !session.was_given(effect.name);
+  });
 }
 
 bool changes_while_it_runs(const std::string& depends_on) {
@@ -256,14 +279,31 @@ Json detectable_json(const std::vector<EffectFinding>& ranking) {
   return json;
 }
 
+/// What the readings cannot show, with what to do about it: of as many as are explained at once.
+Json hidden_json(Session& session) {
+  std::vector<EffectFinding> hidden = session.not_visible();
+  hidden.resize(std::min(hidden.size(), kHidden));
+  const auto parameters = static_cast<std::size_t>(session.linear().problem().jacobian.cols());
+  const std::size_t most = kProductsAtOnce / std::max<std::size_t>(1, session.linear().size() * parameters);
+  std::vector<EffectFinding> named;
+  std::ranges::copy_if(hidden, std::back_inserter(named), std::not_fn(&EffectFinding::resolution));
+  named.resize(std::min(named.size(), most));
+  const std::vector<Explanation> why = session.why_not_visible(named);
+  Json json = Json::array();
+  for (const EffectFinding& effect : hidden) {
+    json.push_back(effect_json(effect));
+    const auto place = std::ranges::find(named, effect.name, &EffectFinding::name) - named.begin();
+    if (static_cast<std::size_t>(place) < why.size())
+      json.back()["remedy"] = remedy_text(why[static_cast<std::size_t>(place)]);
+  }
+  return json;
+}
+
 }  // namespace
 
 Json rank_json(Session& session) {
   const std::vector<EffectFinding>& ranking = session.rank();
-  Json hidden = Json::array();
-  for (const EffectFinding& effect : session.not_visible()) {
-    if (hidden.size() < kHidden) hidden.push_back(effect_json(effect));
-  }
+  Json hidden = hidden_json(session);
   return {{"model", session.current().number},
           {"tests", ranking.size()},
           {"tried", session.tried()},
@@ -371,7 +411,7 @@ Json meaning_json(Session& session) {
   Json share = Json::array();
   for (const VolumeCause& cause : causes.causes) {
     share.push_back({{"label", cause.name},
-                     {"found", cause.found},
+                     {"found", cause.found || was_added(session, cause.name)},
                      {"um", number(cause.rms * kPerMicro)},
                      {"u95_um", cause.u ? number(kCoverageFactor * *cause.u * kPerMicro) : Json()},
                      {"percent", number(100.0 * cause.share)}});

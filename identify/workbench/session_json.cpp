@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/verdict.h"
 #include "volcal/identify/words/effect_meanings.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/identify/workbench/columns.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/registry.h"
@@ -15,11 +18,14 @@
 namespace volcal::workbench {
 namespace {
 
+/// Of an effect that the readings do not show all figures are zero.
+bool is_determined(const AmplitudeFigure& figure) { return figure.u > 0.0; }
+
 Json amplitude_json(const AmplitudeFigure& figure) {
   const double edge = 1.0 / figure.si_per_unit;
   return {{"label", figure.label},
-          {"value", number(figure.value * edge)},
-          {"u95", number(kCoverageFactor * figure.u * edge)},
+          {"value", is_determined(figure) ? number(figure.value * edge) : Json()},
+          {"u95", is_determined(figure) ? number(kCoverageFactor * figure.u * edge) : Json()},
           {"detectable", number(figure.mdb * edge)},
           {"unit", figure.unit}};
 }
@@ -136,6 +142,14 @@ Json formula_json(const FormulaFinding& formula) {
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
+namespace {
+
+bool is_hidden(const EffectFinding& effect) {
+  return !effect.amplitudes.empty() && std::ranges::none_of(effect.amplitudes, is_determined);
+}
+
+}  // namespace
+
 Json effect_json(const EffectFinding& effect) {
   Json amplitudes = Json::array();
   for (const AmplitudeFigure& figure : effect.amplitudes) amplitudes.push_back(amplitude_json(figure));
@@ -147,13 +161,13 @@ Json effect_json(const EffectFinding& effect) {
           {"causes", causes_of(effect)},
           {"amplitudes", std::move(amplitudes)},
           {"shape", effect.shape_text},
-          {"p", probability_text(effect.log10_p)},
+          {"p", std::isfinite(effect.log10_p) ? Json(probability_text(effect.log10_p)) : Json()},
           {"log10_p", number(effect.log10_p)},
           {"gain", number(effect.gain)},
           {"visible", number(effect.visible_fraction)},
           {"formula", written_formula(effect.spec)},
           {"surface", effect.name.kind == "empirical"},
-          {"can_be_added", !effect.resolution}};
+          {"can_be_added", !effect.resolution && !is_hidden(effect)}};
 }
 
 Json figures_json(const LadderStep& figures) {
@@ -175,6 +189,7 @@ Json models_json(const Session& session) {
 Json unknown_json(const UnknownFinding& finding, std::size_t number_of_it) {
   return {{"number", number_of_it},
           {"label", "something that depends on " + finding.dependence() + " along " + finding.action()},
+          {"words", sentence(unnamed(finding))},
           {"variables", names_of(finding.variables)},
           {"with_one_of", names_of(finding.with_one_of)},
           {"direction", name_of(finding.direction)},

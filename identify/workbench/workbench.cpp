@@ -7,7 +7,8 @@
 #include <chrono>
 #include <exception>
 #include <fstream>
-#include <map>
+#include <iterator>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -24,8 +25,9 @@
 namespace volcal::workbench {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{400};  // between looks at files that are to be mended
-constexpr std::size_t kLinesShown = 5;           // on either side of a wrong line
+constexpr std::chrono::milliseconds kLook{400};        // between looks at files that are to be mended
+constexpr std::chrono::milliseconds kLookAgain{2000};  // and at files that were loaded
+constexpr std::size_t kLinesShown = 5;                 // on either side of a wrong line
 constexpr std::size_t kMostColumns = 64;
 const std::string kRefit = "refit";  // awaited: short, and not behind other programs
 const std::string kScan = "scan";
@@ -89,11 +91,8 @@ Json input_error_json(const InputError& error) {
           {"text", lines_about(error.place())}};
 }
 
-using Stamp = std::map<std::string, std::pair<std::filesystem::file_time_type, std::uintmax_t>>;
-
-/// When files were written last, and how long they are.
-Stamp stamp_of(const std::vector<std::string>& files) {
-  Stamp stamp;
+FileStamps stamp_of(const std::vector<std::string>& files) {
+  FileStamps stamp;
   for (const std::string& file : files) {
     std::error_code error;
     const auto time = std::filesystem::last_write_time(file, error);
@@ -101,6 +100,29 @@ Stamp stamp_of(const std::vector<std::string>& files) {
     if (!error) stamp[file] = {time, size};
   }
   return stamp;
+}
+
+/// What stands in quotes, as far as it looks like a name of a file.
+std::vector<std::string> quoted_names(const std::string& text) {
+  std::vector<std::string> names;
+  for (std::size_t at = text.find_first_of("\"'\n"); at != std::string::npos;) {
+    const std::size_t end = text[at] == '\n' ? at : text.find_first_of(std::string{text[at], '\n'}, at + 1);
+    if (end == std::string::npos) break;
+    if (end > at + 1 && text[end] != '\n') {
+      std::string name = text.substr(at + 1, end - at - 1);
+      if (std::filesystem::path(name).has_extension()) names.push_back(std::move(name));
+    }
+    at = text.find_first_of("\"'\n", end + 1);
+  }
+  return names;
+}
+
+/// A file and those that it names, there or not: its text need not be right.
+void add_with_named(const std::filesystem::path& file, std::set<std::string>& files) {
+  if (file.empty() || !files.insert(file.string()).second || file.extension() != ".toml") return;
+  std::ifstream stream(file);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  for (const std::string& name : quoted_names(text)) add_with_named(file.parent_path() / name, files);
 }
 
 SessionCommand command_of(const std::string& request, const Json& body) {
@@ -228,10 +250,10 @@ Answer Workbench::answer(const std::string& request, const std::string& body, co
     const Json json = body.empty() ? Json::object() : Json::parse(body);
     if (std::ranges::find(kOnTests, request) != kOnTests.end()) make_tests();
     const Lock lock(mutex_);
-    if (auto framed = look_framed(request, json))
+    if (auto framed = look_framed(request, json, tab))
       return {200, "application/octet-stream", *std::move(framed)};
     const bool looks = request != "cancel" && request != "take" && request != "quit" && request != "export" &&
-                       !is_command(request);
+                       request != "reload" && !is_command(request);
     const Json told =
         looks ? look(request, request == "state" ? Json{{"tab", tab}} : json) : act(request, json, tab);
     return {200, "application/json", json_text(told, -1)};
@@ -278,7 +300,8 @@ Json Workbench::look(const std::string& request, const Json& body) {
   throw Refusal(404, "\"" + request + "\" is no request of the workbench", "load the page again");
 }
 
-std::optional<std::string> Workbench::look_framed(const std::string& request, const Json& body) {
+std::optional<std::string> Workbench::look_framed(const std::string& request, const Json& body,
+                                                  const std::string& tab) {
   if (request == "columns") {
     const std::vector<std::string> names = texts_of(body, "names");
     if (names.size() > kMostColumns) throw Refusal(400, "too many columns at once", "ask for fewer");
@@ -288,6 +311,8 @@ std::optional<std::string> Workbench::look_framed(const std::string& request, co
   }
   if (request == "preview") return preview_frame(session(), text_of(body, "effect"));
   if (request != "formula") return std::nullopt;
+  require_writer(tab);  // it counts as a test and is kept as a command
+  require_no_work();
   SessionCommand command;
   command.verb = SessionCommand::Verb::Formula;
   command.formula = text_of(body, "text");
@@ -309,22 +334,42 @@ Json Workbench::act(const std::string& request, const Json& body, const std::str
     publish_state();
     return state(tab);
   }
-  if (writer_.empty()) writer_ = tab;
-  if (tab != writer_) throw Refusal(409, "another page writes", "press \"write here\" to take over");
+  require_writer(tab);
   if (request == "quit") {
     hub_.publish("bye", "{}");
     ends_ = true;
     return Json::object();
   }
-  if (const auto what = work_of_the_user())
-    throw Refusal(409, "the program is at work: " + *what, "wait for it, or cancel it");
-  if (request == "export") {
+  require_no_work();
+  if (request == "reload") {
+    load_again();
+  } else if (request == "export") {
     export_now(text_of(body, "what"));
   } else {
     do_command(command_of(request, body));
   }
   publish_state();
   return state(tab);
+}
+
+void Workbench::require_writer(const std::string& tab) {
+  if (writer_.empty()) writer_ = tab;
+  if (tab != writer_) throw Refusal(409, "another page writes", "press \"write here\" to take over");
+}
+
+void Workbench::require_no_work() const {
+  if (const auto what = work_of_the_user())
+    throw Refusal(409, "the program is at work: " + *what, "wait for it, or cancel it");
+}
+
+/// The session ends, and another one begins with the files as they are now.
+void Workbench::load_again() {
+  if (phase_ != Phase::Ready) throw Refusal(409, "the campaign is not loaded yet", "wait until it is there");
+  phase_ = Phase::Loading;
+  load_again_ = true;
+  cancelled_ = busy_.has_value();
+  waiting_.reset();
+  woken_.notify_all();
 }
 
 /// What is under way and may not be stopped by the way.
@@ -433,6 +478,7 @@ Json Workbench::state(const std::string& tab) const {
                {"campaign", campaign_json_},
                {"confirm_behind", options_.confirm_behind},
                {"output", options_.output},
+               {"stale", changed_},
                {"commands", commands_}};
   if (phase_ != Phase::Ready) return json;
   json.update(models_json(*session_));
@@ -467,17 +513,51 @@ SessionProgress Workbench::progress() {
 
 void Workbench::work() {
   Lock lock(mutex_);
+  load_until_ready(lock);
+  while (!ends_) {
+    woken_.wait_for(lock, kLookAgain, [this] { return ends_ || waiting_ || load_again_; });
+    if (ends_) break;
+    if (load_again_) {
+      load_until_ready(lock);
+    } else if (waiting_) {
+      const std::unique_ptr<Job> job = std::move(waiting_);
+      run(*job, lock);
+      woken_.notify_all();
+    } else {
+      look_for_changed_files();
+    }
+  }
+}
+
+void Workbench::load_until_ready(Lock& lock) {
+  load_again_ = false;
+  phase_ = Phase::Loading;
   while (!ends_ && phase_ != Phase::Ready) {
     load(lock);
     if (phase_ == Phase::BadInput) wait_for_mended_files(lock);
   }
-  while (!ends_) {
-    woken_.wait(lock, [this] { return ends_ || waiting_; });
-    if (ends_) break;
-    const std::unique_ptr<Job> job = std::move(waiting_);
-    run(*job, lock);
-    woken_.notify_all();
-  }
+}
+
+/// The campaign, the model and what they name; of wrong files as far as they can be read.
+std::vector<std::string> Workbench::read_files() const {
+  std::set<std::string> files;
+  add_with_named(options_.campaign, files);
+  add_with_named(options_.model, files);
+  if (input_error_) add_with_named(input_error_->place().file, files);
+  return {files.begin(), files.end()};
+}
+
+void Workbench::look_for_changed_files() {
+  std::vector<std::string> files;
+  for (const auto& [file, stamp] : loaded_) files.push_back(file);
+  const FileStamps now = stamp_of(files);
+  std::erase_if(files, [&](const std::string& file) {
+    const auto found = now.find(file);
+    return found != now.end() && found->second == loaded_.at(file);
+  });
+  if (files == changed_) return;
+  changed_ = std::move(files);
+  publish_state();
 }
 
 void Workbench::run(Job& job, Lock& lock) {
@@ -519,6 +599,7 @@ void Workbench::take_found(const Job& job, const std::function<void()>& take) {
 
 /// What goes on behind.
 void Workbench::begin_after(const Job& job, bool taken) {
+  if (load_again_) return;
   const bool further = !job.behind || (job.what == kRefit && taken);
   if (further && !waiting_) confirm_what_is_linear();
   if (job.what == kScan ? taken : job.what != kPrepare) look_for_unknown();
@@ -528,6 +609,10 @@ void Workbench::begin_after(const Job& job, bool taken) {
 void Workbench::load(Lock& lock) {
   phase_ = Phase::Loading;
   input_error_.reset();
+  session_.reset();
+  commands_.clear();
+  changed_.clear();
+  loaded_ = stamp_of(read_files());
   busy_.emplace();
   busy_->what = "load";
   publish_state();
@@ -558,8 +643,8 @@ void Workbench::load(Lock& lock) {
 }
 
 void Workbench::wait_for_mended_files(Lock& lock) {
-  const std::vector<std::string> files = {options_.campaign, options_.model, input_error_->place().file};
-  const Stamp before = stamp_of(files);
+  const std::vector<std::string> files = read_files();
+  const FileStamps before = stamp_of(files);
   while (!ends_ && stamp_of(files) == before) woken_.wait_for(lock, kLook);
 }
 

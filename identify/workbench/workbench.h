@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -30,6 +31,9 @@ struct WorkbenchOptions {
   bool confirm_behind = true;  ///< a full fit follows every linear preview
   Provenance provenance = {};
 };
+
+/// When files were written last, and how long they are; those that are not there are absent.
+using FileStamps = std::map<std::string, std::pair<std::filesystem::file_time_type, std::uintmax_t>>;
 
 struct Answer {
   int status = 200;
@@ -69,9 +73,13 @@ class Workbench {
 
   void make_tests() const;
   Json look(const std::string& request, const Json& body);
-  std::optional<std::string> look_framed(const std::string& request, const Json& body);
+  std::optional<std::string> look_framed(const std::string& request, const Json& body,
+                                         const std::string& tab);
   Json act(const std::string& request, const Json& body, const std::string& tab);
   std::optional<std::string> work_of_the_user() const;
+  void require_writer(const std::string& tab);
+  void require_no_work() const;
+  void load_again();
   void do_command(const SessionCommand& command);
   void export_now(const std::string& what);
   Json state(const std::string& tab) const;
@@ -82,8 +90,11 @@ class Workbench {
   void run(Job& job, Lock& lock);
   void take_found(const Job& job, const std::function<void()>& take);
   void begin_after(const Job& job, bool taken);
+  void load_until_ready(Lock& lock);
   void load(Lock& lock);
   void wait_for_mended_files(Lock& lock);
+  std::vector<std::string> read_files() const;
+  void look_for_changed_files();
   void start(Job job);
   void confirm_what_is_linear();
   void look_for_unknown();
@@ -102,6 +113,9 @@ class Workbench {
   std::optional<Busy> busy_;
   bool cancelled_ = false;
   bool ends_ = false;
+  bool load_again_ = false;
+  FileStamps loaded_;                 ///< files of the session, when it was loaded
+  std::vector<std::string> changed_;  ///< of these, since then
   std::vector<std::string> commands_;
   std::string writer_;
   std::size_t revision_ = 0;

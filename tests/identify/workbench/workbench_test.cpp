@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -170,6 +172,33 @@ TEST_F(WorkbenchOnACampaign, AFormulaNamesItsErrorAndItsPlace) {
   EXPECT_EQ(words["words"][0]["word"], "dir_x");
 }
 
+TEST_F(WorkbenchOnACampaign, WhatTheReadingsDoNotShowHasNoNumberAndARemedy) {
+  for (const char* formula : {"EXX += 0 * x", "EXX += x"}) {
+    const Json effect = Framed(page().ask("formula", {{"text", formula}}).body).json["effect"];
+    EXPECT_TRUE(effect["amplitudes"][0]["value"].is_null()) << formula;
+    EXPECT_TRUE(effect["amplitudes"][0]["u95"].is_null()) << formula;
+    EXPECT_FALSE(effect["can_be_added"]) << formula;
+    EXPECT_THAT(effect["remedy"].get<std::string>(), ::testing::StartsWith("The readings do not show it: "));
+    const Answer added = page().ask("add", {{"effect", effect["name"]}});
+    EXPECT_EQ(added.status, 422) << formula;
+    EXPECT_THAT(added.body, ::testing::HasSubstr("not visible"));
+  }
+  const Json hidden = page().told("rank")["not_visible"];
+  ASSERT_GE(hidden.size(), 2U);
+  for (const Json& effect : hidden)
+    EXPECT_EQ(effect.contains("remedy"), effect["kind"] != "resolution") << effect["name"];
+  EXPECT_EQ(page().ask("formula", {{"text", "EXX += dir_x * 1e300"}}).status, 422);
+}
+
+TEST_F(WorkbenchOnACampaign, APageThatReadsTriesNoFormula) {
+  page().told("take");
+  const Json before = page().state();
+  EXPECT_EQ(page().ask("formula", {{"text", "EXX += 3 * dir_x"}}, "two").status, 409);
+  EXPECT_EQ(page().state()["commands"], before["commands"]);
+  EXPECT_EQ(page().state()["tried"], before["tried"]);
+  EXPECT_EQ(page().ask("preview", {{"effect", kReversalOfX}}, "two").status, 200) << "it may look";
+}
+
 TEST_F(WorkbenchOnACampaign, OnePageWrites) {
   page().told("add", {{"effect", kReversalOfX}});
   EXPECT_EQ(page().ask("undo", {}, "two").status, 409);
@@ -270,11 +299,109 @@ TEST(WorkbenchDoors, LeaveOutAndCancelAndExport) {
   EXPECT_TRUE(fs::exists(page.folder.path() / "out/model-1-1.toml")) << "nothing is overwritten";
 }
 
+TEST(WorkbenchDoors, TriesNoFormulaWhileTheUserWaitsForWork) {
+  Page page(false);
+  page.told("climb");
+  EXPECT_EQ(page.ask("formula", {{"text", "EXX += 3 * dir_x"}}).status, 409);
+  page.told("cancel");
+  page.bench->wait_until_idle();
+  EXPECT_EQ(page.state()["tried"], 0);
+}
+
+TEST(WorkbenchDoors, SaysOfConfirmedEffectsWhatTheyWereAddedBy) {
+  Page page(false);
+  const Json found = page.told("rank")["effects"][0];
+  page.told("add", {{"effect", kReversalOfX}});
+  page.told("confirm");
+  page.bench->wait_until_idle();
+  const Json effect = page.state()["models"][1]["effects"][0];
+  for (const char* key : {"p", "log10_p", "gain", "visible"}) EXPECT_EQ(effect[key], found[key]) << key;
+  const Json share = page.told("meaning")["share"];
+  EXPECT_TRUE(std::ranges::any_of(
+      share, [](const Json& cause) { return cause["label"] == "reversal EXX" && cause["found"]; }));
+}
+
 TEST(WorkbenchDoors, AReaderWritesNothing) {
   Page page(false, true);
   EXPECT_EQ(page.ask("export", {{"what", "model"}}).status, 403);
   EXPECT_EQ(page.ask("add", {{"effect", kReversalOfX}}).status, 200) << "it may look and try";
   EXPECT_FALSE(fs::exists(page.folder.path() / "out"));
+}
+
+/// A workbench on files that are changed, and the phase that it comes to.
+struct Changing {
+  ScratchFolder folder;
+  std::unique_ptr<Workbench> bench;
+
+  Changing() {
+    fs::copy(fs::path(VOLCAL_SOURCE_DIR) / "datasets/hidden/21", folder.path(), fs::copy_options::recursive);
+  }
+  fs::path file(const std::string& name) const { return folder.path() / name; }
+  void open() {
+    WorkbenchOptions options;
+    options.campaign = file("campaign.toml").string();
+    options.threads = 1;
+    bench = std::make_unique<Workbench>(options);
+    bench->wait_until_idle();
+  }
+  Json state() const { return Json::parse(bench->answer("state", "{}", "one").body); }
+  Json ready() const {
+    for (int look = 0; look < 600 && state()["phase"] != "ready"; ++look)
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return state();
+  }
+};
+
+TEST(WorkbenchDoors, GoesOnWhenAnotherFileThanTheOneItNamesIsMended) {
+  Changing files;
+  const std::string readings = "P1_short.csv", machine = "machine.toml";
+  fs::rename(files.file(readings), files.file("away"));
+  files.open();
+  EXPECT_EQ(files.state()["phase"], "bad-input");
+  fs::rename(files.file("away"), files.file(readings));
+  EXPECT_EQ(files.ready()["phase"], "ready");
+
+  const std::string right = testing::content(files.file(machine));
+  std::string wrong = right;
+  wrong.replace(wrong.find("short"), 5, "shord");
+  std::ofstream(files.file(machine)) << wrong;
+  files.open();
+  EXPECT_EQ(files.state()["phase"], "bad-input");
+  std::ofstream(files.file(machine)) << right;
+  EXPECT_EQ(files.ready()["phase"], "ready");
+}
+
+TEST(WorkbenchDoors, SaysThatFilesHaveChangedAndLoadsThemAgain) {
+  Changing files;
+  files.open();
+  EXPECT_TRUE(files.state()["stale"].empty());
+  ASSERT_EQ(files.bench->answer("formula", R"({"text": "EXX += 3 * dir_x"})", "one").status, 200);
+  std::ofstream(files.file("P1_short.csv"), std::ios::app) << "\n";
+  for (int look = 0; look < 100 && files.state()["stale"].empty(); ++look)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_THAT(files.state()["stale"].dump(), ::testing::HasSubstr("P1_short.csv"));
+  EXPECT_EQ(files.bench->answer("reload", "{}", "two").status, 409) << "by the page that writes";
+  EXPECT_EQ(files.bench->answer("reload", "{}", "one").status, 200);
+  files.bench->wait_until_idle();
+  EXPECT_EQ(files.state()["phase"], "ready");
+  EXPECT_TRUE(files.state()["stale"].empty());
+  EXPECT_TRUE(files.state()["commands"].empty()) << "another session";
+}
+
+TEST(WorkbenchDoors, TakesChannelsWithLettersOutsideAscii) {
+  Changing files;
+  for (const auto& entry : fs::directory_iterator(files.folder.path())) {
+    std::string text = testing::content(entry.path());
+    const std::size_t at = text.find("T_air_degC");
+    if (entry.path().extension() == ".csv" && at != std::string::npos)
+      std::ofstream(entry.path()) << text.replace(at, 10, "T_Öl_degC");
+  }
+  files.open();
+  ASSERT_EQ(files.state()["phase"], "ready") << files.state()["input_error"];
+  EXPECT_THAT(files.bench->answer("complete", R"({"text": "EXX += T_Ö", "at": 11})", "one").body,
+              ::testing::HasSubstr("\"T_Öl\""));
+  const Answer answer = files.bench->answer("formula", R"({"text": "EXX += dir_x * T_Öl"})", "one");
+  EXPECT_EQ(answer.status, 200) << answer.body.substr(0, 300);
 }
 
 TEST(WorkbenchDoors, GoesOnWhenAFileIsMended) {

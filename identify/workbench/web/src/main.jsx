@@ -14,7 +14,7 @@ import { Suspects } from './panels/suspects.jsx';
 import { Header } from './strips/header.jsx';
 import { Ladder } from './strips/ladder.jsx';
 import { Exports, Meaning } from './strips/meaning.jsx';
-import { BadInput, Line, Progress, ReadOnly, Trouble } from './strips/status.jsx';
+import { BadInput, Line, Progress, ReadOnly, Stale, Trouble } from './strips/status.jsx';
 
 function Legend() {
   return (
@@ -59,7 +59,7 @@ function Page() {
       {now ? <Header /> : <header class="head"><h1><strong>volcal</strong> workbench</h1></header>}
       <Progress />
       <main>
-        <Line retry={retry} /><ReadOnly /><Trouble />
+        <Line retry={retry} /><ReadOnly /><Stale /><Trouble />
         {now?.phase === 'bad-input' && <BadInput />}
         {ready ? <Ready /> : now?.phase === 'bad-input' || line.value === 'refused' || line.value === 'ended' ? null : loading()}
       </main>

@@ -11,7 +11,7 @@ import { treeOf } from '../src/data/tree.js';
 import { directionWords, stepsOf, unitText, variablesOf } from '../src/data/variables.js';
 import { linear, niceTicks } from '../src/draw/scale.js';
 import { cellVectors, gridOf, solve3 } from '../src/lenses/vector_cells.js';
-import { caretLine, taken } from '../src/panels/completion.js';
+import { bytesBefore, caretLine, placeOfByte, taken } from '../src/panels/completion.js';
 
 const near = (a, b, off = 1e-6) => assert.ok(Math.abs(a - b) <= off, `${a} is not ${b}`);
 
@@ -155,4 +155,11 @@ test('an effect is sketched by its kind, one that has no known shape is not', ()
   assert.deepEqual([step[0][1], step.at(-1)[1]], [-1, 1]);
   assert.ok(sketchOf({ label: 'EXX', shape: 'period 10.02 mm' }).some(([, y]) => y > 0.9));
   assert.equal(sketchOf({ kind: 'other', label: 'EXX' }), null);
+});
+
+test('places in a formula are bytes for the program, characters for the page', () => {
+  const text = 'EXX += T_Öl';
+  assert.equal(bytesBefore(text, 11), 12);
+  assert.equal(placeOfByte(text, 7), 7);
+  assert.equal(placeOfByte(text, 12), 11);
 });

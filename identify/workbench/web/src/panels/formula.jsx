@@ -8,7 +8,7 @@ import { currentModel, mayAct, state } from '../app/store.js';
 import { whenDrawn } from '../draw/schedule.js';
 import { begin, painted } from '../draw/timing.js';
 import { AddedVariable } from './added_variable.jsx';
-import { caretLine, taken } from './completion.js';
+import { bytesBefore, caretLine, placeOfByte, taken } from './completion.js';
 import { AmplitudeBar, amplitudeText, words } from './parts.jsx';
 
 const kPause = 180; // ms without a key
@@ -73,7 +73,8 @@ function Result({ answer, onAdd }) {
         <p>Gain in log-likelihood <b>~&#8201;{significant(effect.gain, 3)}</b>; p <b>{chance(effect.log10_p)}</b>, counted over {tried} tried by hand: <b>{chance(counted)}</b>.</p>
         {effect.fall && Number.isFinite(effect.fall.to_um) && <p>RMS of held-out lines {significant(effect.fall.from_um, 3)} → <b>~{significant(effect.fall.to_um, 3)} µm</b>.</p>}
         {rivals.length > 0 && <p class="cosines">Alike (cosine of the angle between what both explain): {rivals.slice(0, 5).map(({ name, label, cosine }, k) => <span key={name ?? label} class={Math.abs(cosine) > 0.9 ? 'rivals' : ''}>{k > 0 ? ', ' : ''}{label} {significant(cosine, 2)}</span>)}.</p>}
-        <button type="button" class="primary" disabled={!mayAct.value} onClick={onAdd}>Add this formula</button>
+        {effect.remedy && <p class="remedy">{words(effect.remedy)}</p>}
+        <button type="button" class="primary" disabled={!mayAct.value || effect.can_be_added === false} onClick={onAdd}>Add this formula</button>
       </div>
       {answer.columns.driver && <AddedVariable driver={answer.columns.driver} effect={effect} />}
     </div>
@@ -88,9 +89,9 @@ export function FormulaBox() {
   const input = useRef();
   const { answer, error, of } = useFormula(text, parameters);
   const suggest = async (value, at) => {
-    const found = await askWords('complete', { text: value, at }).catch(() => null);
+    const found = await askWords('complete', { text: value, at: bytesBefore(value, at) }).catch(() => null);
     setChosen(0);
-    setList(found && found.words.length > 0 ? { ...found, at } : null);
+    setList(found && found.words.length > 0 ? { ...found, from: placeOfByte(value, found.from), at } : null);
   };
   const typed = (event) => {
     const { value, selectionStart } = event.currentTarget;

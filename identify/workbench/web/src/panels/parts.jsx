@@ -8,13 +8,14 @@ import { unitText } from '../data/variables.js';
 /** Text of the program as it is printed. */
 export const words = (text) => printed(String(text ?? ''));
 
-export const amplitudeText = ({ value, u95, unit }) => `${fixed(value, decimalsFor(u95))} ± ${significant(u95, 2)} ${unitText(unit)}`;
+/** Null stands for what the readings do not determine. */
+export const amplitudeText = ({ value, u95, unit }) => (Number.isFinite(value) && Number.isFinite(u95) ? `${fixed(value, decimalsFor(u95))} ± ${significant(u95, 2)} ${unitText(unit)}` : 'not determined');
 
 /** What distinguishes one of several amplitudes. */
 export const partOf = (effect, amplitude) => (effect.amplitudes.length > 1 ? String(amplitude.label).replace(effect.label, '').trim() : '');
 
 /** How many of the smallest detectable amplitude it is. */
-export const timesDetectable = ({ value, detectable }) => (detectable > 0 ? Math.abs(value) / detectable : null);
+export const timesDetectable = ({ value, detectable }) => (detectable > 0 && Number.isFinite(value) ? Math.abs(value) / detectable : null);
 
 const kScale = 10; // times the smallest detectable amplitude: the length of the bar
 

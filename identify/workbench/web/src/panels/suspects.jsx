@@ -54,7 +54,7 @@ function Suspect({ effect }) {
           <Amplitudes effect={effect} sign="~" />
           <Fall fall={effect.fall} />
           {effect.rivals?.length > 0 && <span class="rivals">These readings hardly tell it from {listed(effect.rivals.map((rival) => rival.label ?? rival))}.</span>}
-          {effect.can_be_added === false && <span class="remedy">The error function needs more knots: give it more in the model file.</span>}
+          {effect.can_be_added === false && !effect.remedy && <span class="remedy">The error function needs more knots: give it more in the model file.</span>}
           {!usable && effect.remedy && <span class="remedy">{words(effect.remedy)}</span>}
         </span>
         <button type="button" class="add" aria-label={`add ${effect.label}`} aria-describedby={`about-${effect.name}`} aria-disabled={!may} onFocus={look_} onBlur={away} onClick={(event) => { event.stopPropagation(); if (may) add(effect.name); }}>add</button>

@@ -59,7 +59,7 @@ function Unknown({ unknown }) {
   return (
     <li class="unknown">
       <p class="title"><b>{words(unknown.label)}</b> <span class="p muted">p {chance(unknown.log10_p ?? Math.log10(Number(unknown.p)))}</span></p>
-      <p>No name of the catalogue explains it. It makes {significant(unknown.rms_um, 2)} µm of the residuals{unknown.period_mm ? `, with a period of ${significant(unknown.period_mm, 4)} mm` : ''}.</p>
+      <p>{words(unknown.words)}.</p>
       <p class="buttons">
         <button type="button" class="primary" disabled={!mayAct.value} onClick={() => draw(unknown.number)}>{drawing ? 'Being drawn' : `Draw the ${thing}`}</button>
         <button type="button" onClick={() => lookAlong(unknown.variables, shiftOf(unknown))}>Look along {unknown.variables.join(', ')}</button>

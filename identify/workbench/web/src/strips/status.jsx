@@ -2,7 +2,7 @@
 import { useEffect, useState } from 'preact/hooks';
 import { act } from '../app/actions.js';
 import { seconds } from '../app/sentences.js';
-import { busy, isWriter, line, state, trouble } from '../app/store.js';
+import { busy, isWriter, line, mayAct, state, trouble } from '../app/store.js';
 import { words } from '../panels/parts.jsx';
 
 const kDoing = { confirm: 'Full fit of this model', climb: 'Search to the end', draw: 'Drawing what has no name', scan: 'Looking for what has no name', prepare: 'Preparing what leads', 'leave-out': 'Fit without these readings', remove: 'Fit without this effect', export: 'Writing', load: 'Reading the campaign', fit: 'Fit of the campaign' };
@@ -69,6 +69,18 @@ export function ReadOnly() {
   );
 }
 
+/** Files that were written since they were loaded. */
+export function Stale() {
+  const changed = state.value?.phase === 'ready' ? state.value.stale ?? [] : [];
+  if (changed.length === 0) return null;
+  return (
+    <div class="banner" role="status">
+      <p><strong>Changed on the disk since it was loaded: {changed.join(', ')}.</strong> The numbers are those of the files as they were. Loading again begins anew; export what is to be kept first.</p>
+      <button type="button" disabled={!mayAct.value} onClick={() => act('reload')}>Load again</button>
+    </div>
+  );
+}
+
 /** File, line and remedy beside the lines of the file. */
 export function BadInput() {
   const wrong = state.value?.input_error;
@@ -79,7 +91,7 @@ export function BadInput() {
         <h2 id="bad-input-title">{wrong.file}{wrong.line ? `, line ${wrong.line}` : ''}</h2>
         <p><strong>{words(wrong.problem)}</strong></p>
         {wrong.remedy && <p>{words(wrong.remedy)}</p>}
-        <p class="muted">Mend the file and save it: the page goes on by itself.</p>
+        <p class="muted">Mend this file, or the one that is wrong, and save it: the page goes on by itself.</p>
       </div>
       <pre class="source" tabindex="0" aria-label={`Lines of ${wrong.file}`}>{(wrong.text ?? []).map(({ line: number, text }) => (
         <span key={number} class={number === wrong.line ? 'wrong' : ''}><span class="number">{number}</span>{text}{'\n'}</span>

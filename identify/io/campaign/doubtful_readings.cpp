@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "volcal/identify/io/campaign/doubtful_angles.h"
 #include "volcal/identify/io/campaign/reading_columns.h"
+#include "volcal/identify/numeric/content_hash.h"
 #include "volcal/identify/standards/approach.h"
 #include "volcal/model/description/finding_codes.h"
 
@@ -68,12 +71,21 @@ struct Repeats {
   }
 };
 
+std::uint64_t hash_of(const std::vector<double>& values) {
+  ContentHash hash;
+  for (const double value : values) hash.add(value + 0.0);  // -0 equals 0
+  return hash.value();
+}
+
+/// Rows are told apart by their hashes: a file may have a million.
 Repeats repeats_in(const Readings& readings, bool of_time) {
-  std::map<std::vector<double>, std::size_t> first;
+  std::unordered_map<std::uint64_t, std::size_t> first;
+  first.reserve(readings.size());
   Repeats repeats;
   for (std::size_t row = 0; row < readings.size(); ++row) {
-    const auto [known, fresh] = first.emplace(values_of_row(readings, row, of_time), row);
-    if (fresh) continue;
+    const std::vector<double> values = values_of_row(readings, row, of_time);
+    const auto [known, fresh] = first.emplace(hash_of(values), row);
+    if (fresh || values != values_of_row(readings, known->second, of_time)) continue;
     if (repeats.count++ == 0) repeats = {1, known->second, row};
   }
   return repeats;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -123,7 +122,8 @@ std::vector<Family> families(const LinearModel& model, std::span<const EffectSpe
 std::vector<Family> own_families(const LinearModel& model, std::span<const EffectSpec> own) {
   std::set<EffectName> present = effects_of(model);
   std::vector<Family> all;
-  for (const EffectSpec& spec : own | std::views::reverse) {
+  for (auto written = own.rbegin(); written != own.rend(); ++written) {
+    const EffectSpec& spec = *written;
     std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, {});
     if (!present.insert(effect->name()).second) continue;
     effect->check(model.campaign(), {});

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -32,7 +31,6 @@ constexpr double kTcpStill = 1e-12;     // m or rad
 constexpr double kNearPole = 0.1;       // of the orientation error
 constexpr double kHardlyTilted = 1e-7;  // rad
 constexpr double kTcpTravelRounding = 1e-9;
-constexpr double kLargestTurn = 5e-3;  // rad, of a correction: 50 times 100 urad, as bounded near a pole
 constexpr double kWholeTurns = 2.0 * std::numbers::pi - 1e-6;
 
 /// G codes that are followed, in tenths: in the mode, outside it, or both.
@@ -279,21 +277,14 @@ TcpRewriter::Node TcpRewriter::node_at(double t) {
   return {t, tcp_->command(TcpPose::between(from_, to_, t), last_directions_)};
 }
 
-/// How far an axis may go beyond its travel, rad: a table of a whole turn for ever, a head, which has cables,
-/// by what a correction turns it.
-double TcpRewriter::beyond_travel(const Axis& axis) const {
-  if (!is_rotary(axis.name) || axis.travel() <= kWholeTurns) return kTcpTravelRounding;
-  const auto& joints = machine_.structure.joints;
-  const bool is_table = std::ranges::find(joints, axis.name, &Joint::axis)->workpiece_side;
-  return is_table ? std::numeric_limits<double>::infinity() : kLargestTurn;
-}
-
 void TcpRewriter::require_reachable(const TcpPose& sent) const {
   const AxisPosition position = tcp_->axes_at(sent);
   for (const Axis& axis : machine_.axes) {
     const double q = position[index_of(axis.name)];
-    const double beyond = beyond_travel(axis);
-    if (q >= axis.travel_min - beyond && q <= axis.travel_max + beyond) continue;
+    const bool turns = is_rotary(axis.name) && axis.travel() > kWholeTurns;
+    const bool inside =
+        q >= axis.travel_min - kTcpTravelRounding && q <= axis.travel_max + kTcpTravelRounding;
+    if (turns || inside) continue;
     const Unit unit = position_unit(axis.name);
     place().refuse(
         fmt::format("the block takes {} to {:.4f} {} in machine coordinates, outside its travel {:g} "

@@ -97,7 +97,6 @@ class TcpRewriter {
   double distance(const Node& node, const TcpPose& chord) const;
   Node node_at(double t);
   ApproachDirection directions_at(double t);
-  double beyond_travel(const Axis& axis) const;
   void require_reachable(const TcpPose& sent) const;
   void write_block(const Words& words, const NcBlock& block, const std::vector<Node>& nodes);
   std::string coordinates(const Node& node);

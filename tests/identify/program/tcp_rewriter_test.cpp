@@ -279,10 +279,6 @@ TEST(TcpRewriter, RefusesWhatItCannotFollow) {
   EXPECT_THAT(refused(begin + "G1 X10 B5\n"), HasSubstr("the machine has no axis B"));
   EXPECT_THAT(refused(begin + "G1 X400 F100\n"), HasSubstr("outside its travel"));
   EXPECT_THAT(refused(begin + "G1 A111 F100\n"), HasSubstr("takes A to"));
-  EXPECT_EQ(refused(begin + "G1 C400 F100\nG49\n"), "") << "a table goes round";
-  const FitResult head = five_axis_result(testing::kHead);
-  const std::string turned_head = "G21 G90 G54\nG0 B0 C0\nG43.4 H1\nG0 X0 Y0 Z0\nG1 C400 F100\n";
-  EXPECT_THAT(testing::refusal([&] { tcp_rewritten(turned_head, head); }), HasSubstr("takes C to"));
   EXPECT_THAT(refused(begin + "G1 X10 Y10 A-30 C90 F100 M0\n"), HasSubstr("in a block of its own"));
   EXPECT_THAT(refused("G21 G90 G54\nG1 X10 F100\nG43.4 H1\n"),
               HasSubstr("feed motion stands outside tool centre point motion"));

@@ -67,10 +67,7 @@ FiveAxisCompensation::FiveAxisCompensation(const Machine& machine, const FiveAxi
     if (is_rotary(axis.name)) centre_[rotary_index(axis.name)] = axis.centre;
   }
   if (settings_.type.has(Part::Orientation)) require_turning_axes(machine);
-  const auto turns_workpiece = [](const Joint& joint) {
-    return joint.workpiece_side && is_rotary(joint.axis);
-  };
-  const bool has_table = std::ranges::any_of(machine.structure.joints, turns_workpiece);
+  const bool has_table = outermost_table_axis(machine.structure).has_value();
   if (!settings_.type.is_volumetric() || (has_table && settings_.type.has(Part::RotaryLocation))) return;
   const AxisPosition home = home_of(machine);
   const Levers at = levers_at(home);
@@ -147,6 +144,14 @@ FiveAxisCompensation::Shares FiveAxisCompensation::shares_at(const AxisPosition&
     (settings_.type.is_volumetric() ? shares.linear : shares.uncorrected) += displacement;
   }
   return shares;
+}
+
+std::optional<AxisName> outermost_table_axis(const Structure& structure) {
+  std::optional<AxisName> outermost;
+  for (const Joint& joint : structure.joints) {  // workpiece to tool
+    if (joint.workpiece_side && is_rotary(joint.axis)) outermost = joint.axis;
+  }
+  return outermost;
 }
 
 Matrix3d linear_directions(const JointLever* levers, std::size_t count) {

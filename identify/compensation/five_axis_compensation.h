@@ -98,6 +98,9 @@ class FiveAxisCompensation {
   Eigen::Vector3d home_moves_ = Eigen::Vector3d::Zero();  ///< of L-VOL at home, m
 };
 
+/// Of the rotary axes that turn the workpiece, the one nearest to the bed.
+std::optional<AxisName> outermost_table_axis(const Structure& structure);
+
 /// Directions of X, Y, Z in workpiece coordinates, zero where the machine lacks the axis.
 Eigen::Matrix3d linear_directions(const JointLever* levers, std::size_t count);
 /// Moves of X, Y, Z along these directions that displace the functional point; directions that they hardly

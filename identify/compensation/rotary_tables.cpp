@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "volcal/identify/compensation/compensation.h"
 #include "volcal/identify/compensation/joint_error_shares.h"
@@ -18,14 +17,6 @@ double grid_step(const TableFormatOptions& options) {
 
 double rotary_table_step(const TableFormatOptions& options) {
   return options.rotary_step > 0.0 ? options.rotary_step : kDefaultRotaryTableStep;
-}
-
-std::optional<AxisName> outermost_table_axis(const Structure& structure) {
-  std::optional<AxisName> outermost;
-  for (const Joint& joint : structure.joints) {  // workpiece to tool
-    if (joint.workpiece_side && is_rotary(joint.axis)) outermost = joint.axis;
-  }
-  return outermost;
 }
 
 Eigen::Vector3d displacement_at_home(const FitResult& result, const TableFormatOptions& options) {

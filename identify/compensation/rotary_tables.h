@@ -1,7 +1,6 @@
 #pragma once
 /// Compensations of rotary axes sampled for a format.
 
-#include <optional>
 #include <vector>
 
 #include "volcal/identify/compensation/five_axis_compensation.h"
@@ -16,9 +15,6 @@ inline constexpr double kDefaultRotaryTableStep = 5.0 * 3.14159265358979323846 /
 /// Largest step of the options, or the default, rad.
 double grid_step(const TableFormatOptions& options);
 double rotary_table_step(const TableFormatOptions& options);
-
-/// Of the rotary axes that turn the workpiece, the one nearest to the bed.
-std::optional<AxisName> outermost_table_axis(const Structure& structure);
 
 /// Error of the linear axes at home approached towards +, m, which their tables leave, since they are zero
 /// there. Where a table turns the workpiece it does not turn with it: it is a displacement of the table's

@@ -163,12 +163,18 @@ std::size_t spheres(const ParameterLayout& layout) {
   }));
 }
 
-/// Of an axis that travels less than a turn and was measured over a part of it, as the gauge of its error
-/// motions is taken over the travel (rotary_gauge.h).
-bool is_measured_in_part(const Campaign& campaign, AxisName axis) {
-  const double travel = campaign.machine.axis(axis).travel();
+/// Whether an axis travels less than a turn and was measured over a part of it, with both for the cause: the
+/// gauge of its error motions is taken over the travel (rotary_gauge.h).
+bool is_measured_in_part(const Campaign& campaign, AxisName axis, Finding& cause) {
+  const Axis& own = campaign.machine.axis(axis);
   const MeasuredRange range = measured_range(campaign, axis);
-  return travel < kWholeTurn && range.max - range.min < kMostOfTravel * travel;
+  if (own.travel() >= kWholeTurn || range.max - range.min >= kMostOfTravel * own.travel()) return false;
+  cause.data["partly"] = letter(axis);
+  for (const auto& [key, value] :
+       {std::pair("from", range.min), std::pair("to", range.max), std::pair("travel_from", own.travel_min),
+        std::pair("travel_to", own.travel_max)})
+    cause.data[key] = FindingNumber{value, "deg", kRadianPerDegree};
+  return true;
 }
 
 /// What tells errors of rotary axes apart: poses of both, places on the table, tools to the side. Of tools
@@ -176,16 +182,7 @@ bool is_measured_in_part(const Campaign& campaign, AxisName axis) {
 std::vector<std::string> rotary_remedies(const MeasurementModel& model, AxisName axis, Finding& cause) {
   const Campaign& campaign = model.campaign();
   std::vector<std::string> remedies;
-  if (is_measured_in_part(campaign, axis)) {
-    const Axis& own = campaign.machine.axis(axis);
-    const MeasuredRange range = measured_range(campaign, axis);
-    remedies.emplace_back("measured-travel");
-    cause.data["partly"] = letter(axis);
-    for (const auto& [key, value] :
-         {std::pair("from", range.min), std::pair("to", range.max), std::pair("travel_from", own.travel_min),
-          std::pair("travel_to", own.travel_max)})
-      cause.data[key] = FindingNumber{value, "deg", kRadianPerDegree};
-  }
+  if (is_measured_in_part(campaign, axis, cause)) remedies.emplace_back("measured-travel");
   const std::vector<AxisName> moving = moving_rotary_axes(campaign);
   if (moving.size() > 1 && !turns_two_at_once(campaign, moving)) remedies.emplace_back("combined-poses");
   const std::size_t sphere_count = spheres(model.layout());

@@ -103,13 +103,14 @@ std::string angles_misread(const Finding& finding) {
 }
 
 std::string positions_misread(const Finding& finding) {
-  return in_setup(finding) + fmt::format(
-                                 "with its tool the nominal tool point scatters by {:.4g} mm where it stands "
-                                 "at one sphere: are its "
-                                 "positions those of the machine's axes (a control with tool centre point "
-                                 "motion shows others), is "
-                                 "the tool the right one?",
-                                 finding.number("miss").in_unit());
+  constexpr std::string_view kQuestion =
+      "are its positions those of the machine's axes (a control with tool centre point motion shows others), "
+      "is "
+      "the tool the right one?";
+  return in_setup(finding) +
+         fmt::format(
+             "with its tool the nominal tool point scatters by {:.4g} mm where it stands at one sphere: {}",
+             finding.number("miss").in_unit(), kQuestion);
 }
 
 std::string angles_in_radians(const Finding& finding) {

@@ -129,8 +129,7 @@ std::string rotary_tables_off_ideal(const Finding& finding) {
   if (finding.flag("constants"))
     return fmt::format(
         "the constants of rotary axes are up to {:.2f} um off what R-POR could correct: they say where the "
-        "axes "
-        "are, not how they are tilted, which grids of rotary axes hold",
+        "axes are, not how they are tilted, which grids of rotary axes hold",
         finding.number("off").in_unit());
   return fmt::format(
       "tables of rotary axes are up to {:.2f} um off what their types could correct: what changes within one "
@@ -161,8 +160,7 @@ std::string rotary_not_in_model(const Finding& finding) {
   if (const std::vector<std::string> locations = finding.texts("locations"); !locations.empty())
     return fmt::format(
         "axis {} moves in these readings, and the model file leaves out its location errors {}: what they do "
-        "is "
-        "in the residuals; add {} = 0.0 below [locations], or \"zero\" for each that is known to be none",
+        "is in the residuals; add {} = 0.0 below [locations], or \"zero\" for each that is known to be none",
         axis, fmt::join(locations, ", "), locations.front());
   if (finding.flag("by_model"))
     return fmt::format(

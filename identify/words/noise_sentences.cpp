@@ -29,8 +29,7 @@ std::string sigma_contradicted(const Finding& finding) {
   if (finding.flag("too_quiet")) {
     text +=
         "; an instrument's readings hardly scatter so little: are they in a larger unit than their columns "
-        "say (mm "
-        "for um, then add scale = { COLUMN = 1000 } to its setups), or were they computed?";
+        "say (mm for um, then add scale = { COLUMN = 1000 } to its setups), or were they computed?";
   }
   if (finding.flag("hardly_noise")) text += kHardlyNoise;
   return text;

@@ -87,8 +87,7 @@ std::string remedy_in_words(const std::string& remedy, const Finding& finding) {
     const auto degrees = [&](const char* key) { return finding.number(key).in_unit(); };
     return fmt::format(
         "measure {} over its travel, {:.4g} to {:.4g} deg, or state in the machine file the {:.4g} to {:.4g} "
-        "deg "
-        "that were measured",
+        "deg that were measured",
         finding.text("partly"), degrees("travel_from"), degrees("travel_to"), degrees("from"), degrees("to"));
   }
   if (remedy == "stations") return "measure from more stations (four, well apart)";

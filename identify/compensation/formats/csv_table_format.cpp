@@ -79,12 +79,12 @@ std::vector<TableFile> write_csv(const FitResult& result, const TableFormatOptio
   files.push_back(spatial_grid_file("compensation_grid.csv", result, options.grid_per_axis,
                                     conditions_of(result, options), TableContent::Compensations));
   if (!options.type.rotary().empty() && no_rotary_grid(result).empty()) {
-    const TableContent errors_of = TableContent::Errors, corrections_of = TableContent::Compensations;
-    for (const RotaryGrid& grid : rotary_grids(result, conditions_of(result, options), grid_step(options)))
-      files.push_back({rotary_grid_file_name(grid.body, errors_of), rotary_grid_csv(grid, errors_of, true)});
-    for (const RotaryGrid& grid : rotary_grids_to_correct(result, options))
-      files.push_back(
-          {rotary_grid_file_name(grid.body, corrections_of), rotary_grid_csv(grid, corrections_of, true)});
+    const auto add = [&files](const std::vector<RotaryGrid>& grids, TableContent content) {
+      for (const RotaryGrid& grid : grids)
+        files.push_back({rotary_grid_file_name(grid.body, content), rotary_grid_csv(grid, content, true)});
+    };
+    add(rotary_grids(result, conditions_of(result, options), grid_step(options)), TableContent::Errors);
+    add(rotary_grids_to_correct(result, options), TableContent::Compensations);
   }
   files.push_back({"metadata.csv", table_metadata_csv(result, options)});
   return files;

@@ -77,7 +77,7 @@ std::uint64_t hash_of(const std::vector<double>& values) {
   return hash.value();
 }
 
-/// Rows are told apart by their hashes: a file may have a million.
+/// By hashes of the rows: a file may have a million.
 Repeats repeats_in(const Readings& readings, bool of_time) {
   std::unordered_map<std::uint64_t, std::size_t> first;
   first.reserve(readings.size());

@@ -120,6 +120,30 @@ TEST(LinuxCncTrt, LeavesNothingOfDisplacedLines) {
   }
 }
 
+/// Linear axes that err by 4 um along Y everywhere, where their tables are zero at home: the pivots hold it,
+/// with the table turned as with it at 0.
+TEST(LinuxCncTrt, PivotsHoldTheErrorAtHome) {
+  testing::GivenErrors given;
+  given.functions["EYX"] = [](double) { return 4e-6; };
+  given.locations = {{"EX0C", 5e-6}, {"EY0A", 3e-6}};
+  const FitResult result = testing::result_with(testing::rotary_machine(kTrtTrunnion), given, 2);
+  given.functions.clear();
+  const FitResult lines_alone = testing::result_with(testing::rotary_machine(kTrtTrunnion), given, 2);
+  TableFormatOptions options = pivots_alone();
+  options.type = CompensationType(CompensationPart::Positioning) | CompensationPart::RotaryLocation;
+  options.step = 0.1;
+  const TableFormat& format = *find_table_format("linuxcnc-trt");
+  const CompensationTables with = format.read(trt_files(result, options)),
+                           without = format.read(trt_files(lines_alone, options));
+  for (const double c : {0.0, 1.0, 2.5}) {
+    AxisPosition pose{};
+    pose[index_of(AxisName::C)] = c;
+    pose[index_of(AxisName::A)] = 0.4 * c;
+    const Eigen::Vector3d more = with.correction(pose, {}).linear - without.correction(pose, {}).linear;
+    EXPECT_LT((more - Eigen::Vector3d(0.0, -4e-6, 0.0)).norm(), 2e-9) << c;
+  }
+}
+
 /// Tilts are left, and the check says how much that is.
 TEST(LinuxCncTrt, WhatTiltsLeaveIsPrinted) {
   const FitResult result = testing::rotary_result(kTrtTrunnion);

@@ -162,8 +162,10 @@ TEST(ErrorAtHome, DoesNotTurnWithTheTable) {
   testing::GivenErrors given;
   given.functions["EYX"] = [](double) { return 4e-6; };
   given.functions["EZY"] = [](double) { return -7e-6; };
-  for (const char* name : {"csv", "neutral-csv", "linuxcnc-grid"}) {
+  for (const char* name : {"csv", "neutral-csv", "linuxcnc-grid", "isg-csv"}) {
     for (const char* structure : {testing::kTrunnion, testing::kMixed}) {
+      // Constants of ISG have no displacement of an axis along itself, here that of C in z.
+      if (std::string(name) == "isg-csv" && structure != testing::kTrunnion) continue;
       given.locations = {{"EX0C", 5e-6}, {"EB0C", 20e-6}};
       given.locations[structure == testing::kTrunnion ? "EY0A" : "EX0B"] = 3e-6;
       const FitResult result = testing::result_with(testing::rotary_machine(structure), given, 36);
@@ -181,6 +183,29 @@ TEST(ErrorAtHome, DoesNotTurnWithTheTable) {
       EXPECT_NEAR(made.rotary_check->exported.max, 0.0, 0.2e-6) << name << " " << structure;
     }
   }
+}
+
+/// Where the control computes with all errors, as in programs.
+TEST(ErrorAtHome, IsCorrectedWhereTheTypeHasTheLinesOfTheTable) {
+  testing::GivenErrors given;
+  given.functions["EYX"] = [](double) { return 4e-6; };
+  given.locations = {{"EX0C", 5e-6}, {"EY0A", 3e-6}};
+  const FitResult result = testing::result_with(testing::rotary_machine(testing::kTrunnion), given, 36);
+  const Tool& tool = result.machine.tools.front();
+  const auto largest_left = [&](const char* type) {
+    FiveAxisSettings settings;
+    settings.type = CompensationType::parse(type);
+    settings.tool_offset = tool.offset;
+    const FiveAxisCompensation compensation(result.machine, settings, joint_errors(result, tool, {}));
+    double largest = 0.0;
+    for (const AxisPosition& pose : poses_of_all_axes(result.machine, 50)) {
+      const auto left = compensation.left_by(compensation.correction(pose), pose);
+      largest = std::max(largest, left.displacement_w.norm());
+    }
+    return largest;
+  };
+  EXPECT_LT(largest_left("L-VOL+R-VOL"), 1e-8);
+  EXPECT_GT(largest_left("L-VOL"), 4e-6) << "zero at home, and nothing of the table";
 }
 
 /// More types never leave more, and the tool's axis turns under R-POS alone, where the control turns axes.

@@ -229,6 +229,18 @@ TEST(Fit, SuspectsTheUnitOfANoiseAThousandTimesTooSmall) {
   EXPECT_TRUE(result.findings.front().flag("unit_slip"));
 }
 
+TEST(Fit, AsksWhetherReadingsThatHardlyScatterAreInAnotherUnit) {
+  auto simulated = sim::simulate(small_study(0, small_tracking()));
+  for (volcal::Setup& setup : simulated.campaign.setups) {
+    setup.repeatability *= 1e3;
+    for (const char* key : {"constant", "per_metre"}) setup.noise.set(key, 1e3 * *setup.noise.number(key));
+  }
+  const FitResult result = fit(simulated.campaign, fitted_splines(5));
+  EXPECT_EQ(result.findings.front().code, FindingCode::NoiseSigmaContradicted);
+  EXPECT_TRUE(result.findings.front().flag("too_quiet"));
+  EXPECT_FALSE(result.findings.front().flag("unit_slip"));
+}
+
 TEST(Fit, ListsAnOutlierAndRemovesItOnlyWhenAsked) {
   auto simulated = sim::simulate(small_study(0, small_tracking()));
   simulated.campaign.setups[2].readings.value[0][40] += 20e-6;

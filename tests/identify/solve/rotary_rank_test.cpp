@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "tests/support/five_axis.h"
 #include "volcal/identify/solve/fit.h"
@@ -102,6 +105,27 @@ TEST(RotaryRank, AsksForTheLinearAxesWhereTheyFollowUnmeasured) {
   EXPECT_THAT(beside.texts("remedies"), Contains("linear-axes"));
   EXPECT_THAT(sentence(beside), HasSubstr("measure the linear axes, too, with the rotary axes at 0"));
   EXPECT_THAT(cause_exchangeable(model, "EX0C", {"EB0A"}).texts("remedies"), Not(Contains("linear-axes")));
+}
+
+/// A model file of other errors alone, one that names motions of C, and one that leaves nothing out.
+TEST(RotaryRank, SaysWhatTheModelFileLeavesOut) {
+  const sim::TruthMachine truth = five_axis_truth(five_axis_machine("w C' A' b X Y Z t"), {}, 5);
+  const Campaign campaign = r_test_campaign(truth, GridPlan{}, 17);
+  const auto left_out = [&](const ModelSpec& model) {
+    std::map<std::string, std::vector<std::string>> axes;
+    for (const Finding& finding : fit(campaign, model, {}).findings) {
+      if (finding.code != FindingCode::RotaryErrorsNotInModel) continue;
+      EXPECT_TRUE(finding.flag("by_model"));
+      axes[finding.text("axis")] = finding.texts("locations");
+    }
+    return axes;
+  };
+  ModelSpec model = rotary_model_of(2);
+  EXPECT_TRUE(left_out(model).empty());
+  model.default_function.basis = "zero";
+  const auto of_motions = left_out(model);
+  EXPECT_THAT(of_motions.at("C"), Contains("EX0C"));
+  EXPECT_TRUE(of_motions.at("A").empty()) << "all of its errors";
 }
 
 /// A cradle that travels a radian farther than it was measured.

@@ -11,7 +11,7 @@ import { treeOf } from '../src/data/tree.js';
 import { directionWords, stepsOf, unitText, variablesOf } from '../src/data/variables.js';
 import { linear, niceTicks } from '../src/draw/scale.js';
 import { cellVectors, gridOf, solve3 } from '../src/lenses/vector_cells.js';
-import { bytesBefore, caretLine, placeOfByte, taken } from '../src/panels/completion.js';
+import { bytesBefore, caretLine, columnOfByte, placeOfByte, taken } from '../src/panels/completion.js';
 
 const near = (a, b, off = 1e-6) => assert.ok(Math.abs(a - b) <= off, `${a} is not ${b}`);
 
@@ -162,4 +162,5 @@ test('places in a formula are bytes for the program, characters for the page', (
   assert.equal(bytesBefore(text, 11), 12);
   assert.equal(placeOfByte(text, 7), 7);
   assert.equal(placeOfByte(text, 12), 11);
+  assert.equal(columnOfByte('T_Öl * ?', 9), 8);
 });

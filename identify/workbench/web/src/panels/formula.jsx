@@ -8,7 +8,7 @@ import { currentModel, mayAct, state } from '../app/store.js';
 import { whenDrawn } from '../draw/schedule.js';
 import { begin, painted } from '../draw/timing.js';
 import { AddedVariable } from './added_variable.jsx';
-import { bytesBefore, caretLine, placeOfByte, taken } from './completion.js';
+import { bytesBefore, caretLine, columnOfByte, placeOfByte, taken } from './completion.js';
 import { AmplitudeBar, amplitudeText, words } from './parts.jsx';
 
 const kPause = 180; // ms without a key
@@ -54,11 +54,12 @@ function Suggestions({ list, chosen, onTake }) {
   );
 }
 
-function Problem({ error }) {
+function Problem({ error, text }) {
+  const column = error.column ? columnOfByte(text, error.column) : null;
   return (
     <div id="formula-problem" class="problem" role="alert">
-      {error.column ? <pre aria-hidden="true">{caretLine(error.column)}</pre> : null}
-      <p><strong>{words(error.message)}</strong>{error.column ? ` (column ${error.column})` : ''}{error.remedy ? ` ${words(error.remedy)}` : ''}</p>
+      {column ? <pre aria-hidden="true">{caretLine(column)}</pre> : null}
+      <p><strong>{words(error.message)}</strong>{column ? ` (column ${column})` : ''}{error.remedy ? ` ${words(error.remedy)}` : ''}</p>
     </div>
   );
 }
@@ -129,7 +130,7 @@ export function FormulaBox() {
           <input ref={input} type="text" spellcheck={false} autocomplete="off" aria-label="Formula" placeholder="EXX += dir_x * (T_column - 20)" value={text} onInput={typed} onKeyDown={key} onBlur={() => setList(null)}
             role="combobox" aria-expanded={Boolean(list)} aria-controls="formula-words" aria-autocomplete="list" aria-activedescendant={list ? `formula-word-${chosen}` : undefined} aria-invalid={Boolean(error)} aria-describedby={error ? 'formula-problem' : undefined} />
           {list && <Suggestions list={list} chosen={chosen} onTake={take} />}
-          {error && of === text && <Problem error={error} />}
+          {error && of === text && <Problem error={error} text={of} />}
         </div>
         <label class="parameters">Start values <input type="text" spellcheck={false} autocomplete="off" placeholder="p=10 mm" value={parameters} onInput={(event) => setParameters(event.currentTarget.value)} /></label>
       </div>

@@ -100,19 +100,19 @@ BudgetOf budget_of(const py::object& errors, const std::optional<std::filesystem
 }
 
 py::dict line_columns(const std::vector<BudgetLine>& lines) {
-  const auto texts = [&](auto member) {
-    py::list list;
-    for (const BudgetLine& line : lines) list.append(text_of(line.*member));
-    return list;
-  };
   const auto numbers = [&](auto member) {
     std::vector<double> values;
     for (const BudgetLine& line : lines) values.push_back(line.*member);
     return array_of(values);
   };
   py::dict columns;
-  columns["name"] = texts(&BudgetLine::name);
-  columns["depends_on"] = texts(&BudgetLine::depends_on);
+  py::list names, depends_on;
+  for (const BudgetLine& line : lines) {
+    names.append(text_of(line.name));
+    depends_on.append(text_of(line.depends_on_text()));
+  }
+  columns["name"] = names;
+  columns["depends_on"] = depends_on;
   columns["rms"] = numbers(&BudgetLine::rms);
   columns["max"] = numbers(&BudgetLine::max);
   columns["share"] = numbers(&BudgetLine::share);
@@ -128,7 +128,7 @@ void define_budget_line(py::module_& module) {
           "name", [](const BudgetLine& line) { return text_of(line.name); },
           "\"EAY\", \"EC0Y\", or a cause: \"angles\".")
       .def_property_readonly(
-          "depends_on", [](const BudgetLine& line) { return text_of(line.depends_on); },
+          "depends_on", [](const BudgetLine& line) { return text_of(line.depends_on_text()); },
           "What a contribution depends on: \"y\", \"z dir_y\"; \"\" for a constant and a cause.")
       .def_readonly("rms", &BudgetLine::rms, "Root mean square of the displacement, m.")
       .def_readonly("max", &BudgetLine::max, "Largest displacement, m.")

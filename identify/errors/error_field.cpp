@@ -32,10 +32,6 @@ double temperature_excess_at(const Conditions& conditions, const std::string& ch
   return stated == conditions.temperature_degC.end() ? 0.0 : stated->second - kReferenceTemperature_degC;
 }
 
-std::string joined_words(const std::string& first, const std::string& second) {
-  return first.empty() || second.empty() ? first + second : first + " " + second;
-}
-
 }  // namespace
 
 MeasuredTravel::MeasuredTravel() {
@@ -72,8 +68,8 @@ ErrorField::ErrorField(const FitResult& result, const Tool& tool, const Conditio
       effects_(result, tool, conditions) {
   for (const Axis& axis : result.machine.axes) {
     if (!axis.expansion) continue;
-    Expansion expansion{axis.name, 0.0, temperature_excess_at(conditions, axis.expansion->channel), axis.home,
-                        -1};
+    const std::string& channel = axis.expansion->channel;
+    Expansion expansion{axis.name, channel, 0.0, temperature_excess_at(conditions, channel), axis.home, -1};
     expansion.strain = axis.expansion->per_kelvin * expansion.excess;
     const std::string name = expansion_parameter(axis.name);
     if (const ParameterBlock* block = layout_.find_block(name)) expansion.parameter = block->offset;
@@ -295,9 +291,8 @@ PoseErrorVector ErrorField::contribution(const Contribution& part, const AxisPos
   const PoseErrorRows all = rows(position, direction);
   PoseErrorVector error = PoseErrorVector::Zero();
   for (const int parameter : part.parameters) error += all.col(parameter) * parameters_[parameter];
-  if (part.kind == ContributionKind::Expansion) {
-    error += known_expansion(position, part.axis);
-  }
+  if (const auto* expansion = std::get_if<ExpansionError>(&part.source))
+    error += known_expansion(position, expansion->axis);
   return error;
 }
 
@@ -305,11 +300,8 @@ std::vector<Contribution> ErrorField::contributions() const {
   std::vector<Contribution> parts;
   for (const FunctionGroup& group : layout_.groups) {
     for (int slot = 0; slot < group.count(); ++slot) {
-      Contribution part{ContributionKind::Function,
-                        group.symbols[static_cast<std::size_t>(slot)].name(),
-                        std::string(1, lower_letter_of(group.axis)),
-                        {},
-                        {}};
+      const ErrorSymbol symbol = group.symbols[static_cast<std::size_t>(slot)];
+      Contribution part{symbol, symbol.name(), {position_of(group.axis)}, {}};
       for (int j = 0; j < group.basis->size(); ++j) part.parameters.push_back(group.index(j, slot));
       parts.push_back(std::move(part));
     }
@@ -317,23 +309,20 @@ std::vector<Contribution> ErrorField::contributions() const {
   for (const ParameterBlock& block : layout_.blocks) {
     if (!block.location) continue;
     const AxisName axis = block.location->axis;
-    parts.push_back({ContributionKind::Location,
-                     block.name,
-                     is_rotary(axis) ? std::string() : std::string(1, lower_letter_of(axis)),
-                     {block.offset},
-                     {}});
+    std::vector<Variable> lever;
+    if (!is_rotary(axis)) lever.push_back(position_of(axis));
+    parts.push_back({*block.location, block.name, std::move(lever), {block.offset}});
   }
   for (const Expansion& expansion : expansions_) {
-    Contribution part{ContributionKind::Expansion,
+    Contribution part{ExpansionError{expansion.axis},
                       expansion_parameter(expansion.axis),
-                      joined_words(std::string(1, lower_letter_of(expansion.axis)), "temperature"),
-                      {},
-                      expansion.axis};
+                      {position_of(expansion.axis), temperature_of(expansion.channel)},
+                      {}};
     if (expansion.parameter >= 0) part.parameters = {expansion.parameter};
     parts.push_back(std::move(part));
   }
   for (std::size_t e = 0; e < effects_.effect_count(); ++e) {
-    Contribution part{ContributionKind::Effect, effects_.label(e), effects_.reach(e).text(), {}, {}};
+    Contribution part{effects_.name(e), effects_.label(e), effects_.reach(e).variables(), {}};
     for (std::size_t c = 0; c < effects_.amplitude_count(); ++c) {
       if (effects_.columns()[c].effect == e) part.parameters.push_back(effects_.columns()[c].parameter);
     }
@@ -342,15 +331,14 @@ std::vector<Contribution> ErrorField::contributions() const {
     if (same == parts.end()) {
       parts.push_back(std::move(part));
     } else if (same->depends_on != part.depends_on) {
-      same->depends_on = joined_words(same->depends_on, part.depends_on);
+      same->depends_on.insert(same->depends_on.end(), part.depends_on.begin(), part.depends_on.end());
     }
   }
   if (tool_parameter_ >= 0)
-    parts.push_back({ContributionKind::Tool,
+    parts.push_back({ToolOffsetError{},
                      tool_parameter(tool_.name),
                      {},
-                     {tool_parameter_, tool_parameter_ + 1, tool_parameter_ + 2},
-                     {}});
+                     {tool_parameter_, tool_parameter_ + 1, tool_parameter_ + 2}});
   return parts;
 }
 

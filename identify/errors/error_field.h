@@ -17,6 +17,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "volcal/identify/errors/conditions.h"
@@ -43,15 +44,22 @@ struct MeasuredTravel {
   bool is_beyond(const AxisPosition& position) const;
 };
 
-enum class ContributionKind { Function, Location, Expansion, Effect, Tool };
+/// Expansion of the scale of an axis.
+struct ExpansionError {
+  AxisName axis = AxisName::X;
+};
+/// What the offset of the tool is in error by.
+struct ToolOffsetError {};
+
+/// What a summand of the error comes from.
+using ErrorSource = std::variant<ErrorSymbol, LocationSymbol, ExpansionError, EffectName, ToolOffsetError>;
 
 /// One summand of the error.
 struct Contribution {
-  ContributionKind kind = ContributionKind::Function;
-  std::string name;              ///< "EAY", "EC0Y", "expansion X", "reversal EXX", "tool long"
-  std::string depends_on;        ///< "y", "z dir_y", "T_column x"; empty = a constant
-  std::vector<int> parameters;   ///< that it is linear in
-  std::optional<AxisName> axis;  ///< of an expansion
+  ErrorSource source;
+  std::string name;                  ///< "EAY", "EC0Y", "expansion X", "reversal EXX", "tool long"
+  std::vector<Variable> depends_on;  ///< empty = a constant
+  std::vector<int> parameters;       ///< that it is linear in
 };
 
 /// Standard uncertainty that a curve or surface leaves where it has faded out.
@@ -120,6 +128,7 @@ class ErrorField {
   /// Displacement along an axis by the expansion of its scale.
   struct Expansion {
     AxisName axis = AxisName::X;
+    std::string channel;  ///< of its temperature
     double strain = 0.0;  ///< known, m/m at the stated temperature
     double excess = 0.0;  ///< temperature less 20 degC, K
     double home = 0.0;    ///< from which it counts, m

@@ -115,19 +115,18 @@ bool differ(const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) {
 
 int EffectReach::positions() const { return static_cast<int>(std::ranges::count(position, true)); }
 
-std::string EffectReach::text() const {
-  std::string names;
-  const auto add = [&names](const Variable& each) { names += (names.empty() ? "" : " ") + each.name(); };
+std::vector<Variable> EffectReach::variables() const {
+  std::vector<Variable> all;
   for (const AxisName axis : kAllAxes) {
-    if (position[index_of(axis)]) add(position_of(axis));
+    if (position[index_of(axis)]) all.push_back(position_of(axis));
   }
   for (const AxisName axis : kAllAxes) {
-    if (direction[index_of(axis)]) add(direction_of_approach(axis));
+    if (direction[index_of(axis)]) all.push_back(direction_of_approach(axis));
   }
-  for (const std::string& channel : temperature) add(temperature_of(channel));
-  if (time) add({Variable::Kind::Time});
-  if (feed) add({Variable::Kind::Feed});
-  return names;
+  for (const std::string& channel : temperature) all.push_back(temperature_of(channel));
+  if (time) all.push_back({Variable::Kind::Time});
+  if (feed) all.push_back({Variable::Kind::Feed});
+  return all;
 }
 
 /// What all copies share: the effects, and the poses' readings by thread.
@@ -394,6 +393,9 @@ MachineEffects::MachineEffects(const FitResult& result, const Tool& tool, const 
   shared_ = std::move(shared);
 }
 
+const EffectName& MachineEffects::name(std::size_t effect) const {
+  return shared_->effects[effect].effect->name();
+}
 const std::string& MachineEffects::label(std::size_t effect) const { return shared_->effects[effect].label; }
 const EffectReach& MachineEffects::reach(std::size_t effect) const { return shared_->effects[effect].reach; }
 std::size_t MachineEffects::effect_count() const { return shared_->effects.size(); }

@@ -35,8 +35,7 @@ struct EffectReach {
   bool feed = false;
 
   int positions() const;  ///< number of axes on whose position it depends
-  /// "z dir_x T_column time"
-  std::string text() const;
+  std::vector<Variable> variables() const;
 };
 
 /// A parameter of an effect and what it acts on. `shape`: derivative to a parameter of the shape.
@@ -65,6 +64,7 @@ class MachineEffects {
   /// All amplitudes first, then derivatives to shapes.
   const std::vector<EffectColumn>& columns() const { return columns_; }
   std::size_t amplitude_count() const { return amplitude_count_; }
+  const EffectName& name(std::size_t effect) const;
   const std::string& label(std::size_t effect) const;
   const EffectReach& reach(std::size_t effect) const;
   std::size_t effect_count() const;

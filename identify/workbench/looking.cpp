@@ -224,20 +224,8 @@ std::vector<EffectFinding> added_since_fit(const Session& session) {
 }
 
 /// Whether a cause is an effect that was added in this session.
-bool was_added(const Session& session, const std::string& cause) {
-  return std::ranges::any_of(session.current().effects, [&](const EffectFinding& effect) {
-    const bool named =
-        effect.label == cause ||
-        std::ranges::find(effect.amplitudes, cause, &AmplitudeFigure::label) != effect.amplitudes.end();
-    return named && !session.was_given(effect.name);
-  });
-}
-
-bool changes_while_it_runs(const std::string& depends_on) {
-  return std::ranges::any_of(words_in(depends_on), [](const std::string& word) {
-    const auto variable = Variable::parse(word);
-    return variable && variable->changes_at_rest();
-  });
+bool was_added(const Session& session, const VolumeCause& cause) {
+  return cause.effect && !session.was_given(*cause.effect);
 }
 
 /// Of a machine that is compensated by the tables of the last full fit: how uncertain they are, and what none
@@ -249,7 +237,7 @@ Json left_json(const Session& session) {
   double squares = 0.0;
   Json held_by_none = Json::array();
   for (const BudgetLine& line : budget.contributions) {
-    if (!changes_while_it_runs(line.depends_on)) continue;
+    if (std::ranges::none_of(line.depends_on, &Variable::changes_at_rest)) continue;
     squares += line.rms * line.rms;
     held_by_none.push_back(line.name);
   }
@@ -411,7 +399,7 @@ Json meaning_json(Session& session) {
   Json share = Json::array();
   for (const VolumeCause& cause : causes.causes) {
     share.push_back({{"label", cause.name},
-                     {"found", cause.found || was_added(session, cause.name)},
+                     {"found", cause.found || was_added(session, cause)},
                      {"um", number(cause.rms * kPerMicro)},
                      {"u95_um", cause.u ? number(kCoverageFactor * *cause.u * kPerMicro) : Json()},
                      {"percent", number(100.0 * cause.share)}});

@@ -24,26 +24,20 @@ using Field = std::vector<Vector3d>;
 
 constexpr const char* kCauseOfRotaryAxes = "rotary axes";
 
-std::string cause_of(const Contribution& part) {
-  switch (part.kind) {
-    case ContributionKind::Expansion:
-      return "expansion of scales";
-    case ContributionKind::Effect:
-      return kCauseOfEffects;
-    case ContributionKind::Tool:
-      return "tool";
-    case ContributionKind::Location: {
-      const auto symbol = LocationSymbol::parse(part.name);
-      return symbol && is_rotary(symbol->axis) ? kCauseOfRotaryAxes : "squareness";
-    }
-    case ContributionKind::Function:
-      break;
+/// Of every kind of source.
+struct CauseOf {
+  std::string operator()(const ExpansionError&) const { return "expansion of scales"; }
+  std::string operator()(const EffectName&) const { return kCauseOfEffects; }
+  std::string operator()(const ToolOffsetError&) const { return "tool"; }
+  std::string operator()(const LocationSymbol& symbol) const {
+    return is_rotary(symbol.axis) ? kCauseOfRotaryAxes : "squareness";
   }
-  const ErrorSymbol symbol = *ErrorSymbol::parse(part.name);
-  if (is_rotary(symbol.axis)) return kCauseOfRotaryAxes;
-  if (symbol.is_positioning()) return "positioning";
-  return symbol.is_straightness() ? "straightness" : "angular errors";
-}
+  std::string operator()(const ErrorSymbol& symbol) const {
+    if (is_rotary(symbol.axis)) return kCauseOfRotaryAxes;
+    if (symbol.is_positioning()) return "positioning";
+    return symbol.is_straightness() ? "straightness" : "angular errors";
+  }
+};
 
 /// Positions of rotary axes, one set after another, spread evenly and without a period in common with a grid
 /// of other axes: multiples of powers of the inverse of the root of x^7 = x + 1, less whole numbers (additive
@@ -158,8 +152,8 @@ class VolumeOfParts {
     const Eigen::Matrix<double, 3, Eigen::Dynamic> rows = field_.rows(position, direction).topRows<3>();
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       Vector3d displacement = Vector3d::Zero();
-      if (parts_[p].kind == ContributionKind::Expansion)
-        displacement = field_.known_expansion(position, parts_[p].axis).head<3>();
+      if (const auto* expansion = std::get_if<ExpansionError>(&parts_[p].source))
+        displacement = field_.known_expansion(position, expansion->axis).head<3>();
       for (const int parameter : parts_[p].parameters)
         displacement += rows.col(parameter) * result_.parameters[parameter];
       fields_[p].push_back(displacement);
@@ -241,6 +235,12 @@ struct Together {
 
 }  // namespace
 
+std::string BudgetLine::depends_on_text() const {
+  std::string text;
+  for (const Variable& variable : depends_on) text += (text.empty() ? "" : " ") + variable.name();
+  return text;
+}
+
 ErrorBudget error_budget(const FitResult& result, const Tool& tool, const Conditions& conditions,
                          int cells_per_axis, RotaryPoses rotary) {
   const VolumeOfParts volume(result, tool, conditions, cells_per_axis, rotary);
@@ -252,7 +252,7 @@ ErrorBudget error_budget(const FitResult& result, const Tool& tool, const Condit
     const Contribution& part = volume.parts()[p];
     fields.push_back(volume.field(p));
     whole.add(fields.back(), part.parameters);
-    by_cause[cause_of(part)].add(fields.back(), part.parameters);
+    by_cause[std::visit(CauseOf{}, part.source)].add(fields.back(), part.parameters);
   }
   ErrorBudget budget;
   budget.turned = volume.turned();
@@ -271,8 +271,10 @@ ErrorBudget error_budget(const FitResult& result, const Tool& tool, const Condit
   budget.total = line("all", whole.field, whole.parameters);
   budget.total.expected_share = budget.total.expected_rms() > 0.0 ? 1.0 : 0.0;
   for (std::size_t p = 0; p < fields.size(); ++p) {
-    budget.contributions.push_back(line(volume.parts()[p].name, fields[p], volume.parts()[p].parameters));
-    budget.contributions.back().depends_on = volume.parts()[p].depends_on;
+    const Contribution& part = volume.parts()[p];
+    BudgetLine& made = budget.contributions.emplace_back(line(part.name, fields[p], part.parameters));
+    made.source = part.source;
+    made.depends_on = part.depends_on;
   }
   for (const auto& [cause, together] : by_cause)
     budget.causes.push_back(line(cause, together.field, together.parameters));

@@ -11,6 +11,7 @@
 /// (<e, e> + u^2); they sum to 1 where the contributions are uncorrelated, as at the design stage.
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,14 +26,17 @@ inline constexpr int kBudgetCells = 7;
 inline constexpr const char* kCauseOfEffects = "effects beyond the rigid body";
 
 struct BudgetLine {
-  std::string name;             ///< of the contribution, or of the cause
-  std::string depends_on;       ///< of a contribution
-  double rms = 0.0;             ///< of the displacement, m
-  double max = 0.0;             ///< at these places and at the ends of travel, m
-  double share = 0.0;           ///< of the mean square of the whole error
+  std::string name;                        ///< of the contribution, or of the cause
+  std::optional<ErrorSource> source = {};  ///< of a contribution
+  std::vector<Variable> depends_on = {};   ///< of a contribution
+  double rms = 0.0;                        ///< of the displacement, m
+  double max = 0.0;                        ///< at these places and at the ends of travel, m
+  double share = 0.0;                      ///< of the mean square of the whole error
   double u_rms = 0.0;           ///< root mean square of the standard uncertainty of the contribution, m
   double expected_share = 0.0;  ///< of the mean square that is expected with the uncertainty
 
+  /// "y", "z dir_y", "x T_column"; empty for a constant and a cause.
+  std::string depends_on_text() const;
   /// Root of the mean square that is expected with the uncertainty, m.
   double expected_rms() const { return std::hypot(rms, u_rms); }
 };

@@ -16,7 +16,7 @@ constexpr std::size_t kShownContributions = 12;
 
 std::vector<std::string> cells_of(const BudgetLine& line, double coverage_factor) {
   return {line.name,
-          line.depends_on,
+          line.depends_on_text(),
           fixed_number(line.rms / kMicro, 2),
           fixed_number(line.max / kMicro, 2),
           fixed_number(100.0 * line.share, 1),
@@ -25,7 +25,7 @@ std::vector<std::string> cells_of(const BudgetLine& line, double coverage_factor
 
 nlohmann::ordered_json line_json(const BudgetLine& line) {
   nlohmann::ordered_json json = {{"name", line.name}};
-  if (!line.depends_on.empty()) json["depends_on"] = line.depends_on;
+  if (!line.depends_on.empty()) json["depends_on"] = line.depends_on_text();
   json["rms_um"] = line.rms / kMicro;
   json["max_um"] = line.max / kMicro;
   json["share_percent"] = 100.0 * line.share;
@@ -33,28 +33,30 @@ nlohmann::ordered_json line_json(const BudgetLine& line) {
   return json;
 }
 
-/// Width of the band of an error, SI; none where it has no tolerance.
-std::optional<double> width_of_error(const Tolerances& tolerances, const std::string& name) {
-  if (const auto symbol = ErrorSymbol::parse(name)) {
-    const auto found = tolerances.functions.find(*symbol);
-    if (found != tolerances.functions.end()) return found->second;
-  }
-  if (const auto symbol = LocationSymbol::parse(name)) {
-    const auto found = tolerances.squareness.find(*symbol);
-    if (found != tolerances.squareness.end()) return found->second;
-  }
-  return std::nullopt;
+template <class Symbol>
+const Symbol* symbol_of(const BudgetLine& line) {
+  return line.source ? std::get_if<Symbol>(&*line.source) : nullptr;
 }
 
-std::string unit_of_error(const std::string& name) {
-  if (const auto symbol = ErrorSymbol::parse(name)) return std::string(edge_unit(symbol->component));
-  return "urad";
+/// Width of the band of an error, SI; none where it has no tolerance.
+std::optional<double> width_of_error(const Tolerances& tolerances, const BudgetLine& line) {
+  const auto width_in = [](const auto& widths, const auto* symbol) -> std::optional<double> {
+    const auto found = symbol != nullptr ? widths.find(*symbol) : widths.end();
+    return found != widths.end() ? std::optional(found->second) : std::nullopt;
+  };
+  const auto width = width_in(tolerances.functions, symbol_of<ErrorSymbol>(line));
+  return width ? width : width_in(tolerances.squareness, symbol_of<LocationSymbol>(line));
+}
+
+std::string unit_of_error(const BudgetLine& line) {
+  const auto* symbol = symbol_of<ErrorSymbol>(line);
+  return symbol != nullptr ? std::string(edge_unit(symbol->component)) : "urad";
 }
 
 std::vector<std::string> design_cells(const BudgetLine& line, const Tolerances& tolerances) {
-  const auto width = width_of_error(tolerances, line.name);
-  return {line.name, line.depends_on,
-          width ? short_number(*width / kMicro) + " " + unit_of_error(line.name) : std::string(),
+  const auto width = width_of_error(tolerances, line);
+  return {line.name, line.depends_on_text(),
+          width ? short_number(*width / kMicro) + " " + unit_of_error(line) : std::string(),
           fixed_number(line.expected_rms() / kMicro, 2), fixed_number(100.0 * line.expected_share, 1)};
 }
 
@@ -72,9 +74,9 @@ std::vector<std::string> without_tolerance(const Machine& machine, const Toleran
 
 nlohmann::ordered_json design_line_json(const BudgetLine& line, const Tolerances& tolerances) {
   nlohmann::ordered_json json = {{"name", line.name}};
-  if (!line.depends_on.empty()) json["depends_on"] = line.depends_on;
-  if (const auto width = width_of_error(tolerances, line.name))
-    json["tolerance_" + unit_of_error(line.name)] = *width / kMicro;
+  if (!line.depends_on.empty()) json["depends_on"] = line.depends_on_text();
+  if (const auto width = width_of_error(tolerances, line))
+    json["tolerance_" + unit_of_error(line)] = *width / kMicro;
   json["expected_rms_um"] = line.expected_rms() / kMicro;
   json["expected_share_percent"] = 100.0 * line.expected_share;
   return json;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <utility>
+#include <variant>
 
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/errors/volume/error_budget.h"
@@ -59,23 +60,24 @@ FitResult extended_result(const FitResult& given, std::span<const EffectFinding>
   return result;
 }
 
-/// The error field knows an effect by its label, or by that of an amplitude.
-bool is_named(const EffectFinding& effect, const std::string& contribution) {
-  return effect.label == contribution ||
-         std::ranges::find(effect.amplitudes, contribution, &AmplitudeFigure::label) !=
-             effect.amplitudes.end();
+/// Names and labels of the effects that are added; what is given back to the model is none.
+std::vector<std::pair<EffectName, std::string>> named_effects(std::span<const EffectFinding> added) {
+  std::vector<std::pair<EffectName, std::string>> named;
+  for (const EffectFinding& effect : added) {
+    if (const EffectKind* kind = find_effect(effect.spec.kind))
+      named.emplace_back(kind->make(effect.spec, {})->name(), effect.label);
+  }
+  return named;
 }
 
-bool is_effect_of(const ModelSpec& model, const std::string& contribution) {
-  return std::ranges::any_of(model.effects, [&](const EffectSpec& spec) {
-    const EffectKind* kind = find_effect(spec.kind);
-    return kind != nullptr && effect_label(*kind->make(spec, model.file)) == contribution;
-  });
+std::optional<EffectName> effect_of(const BudgetLine& line) {
+  const auto* name = line.source ? std::get_if<EffectName>(&*line.source) : nullptr;
+  return name != nullptr ? std::optional(*name) : std::nullopt;
 }
 
 VolumeCause cause_of_line(const BudgetLine& line, bool found) {
-  return {line.name, found, line.rms, line.u_rms > 0.0 ? std::optional(line.u_rms) : std::nullopt,
-          line.share};
+  return {line.name,  found,          line.rms, line.u_rms > 0.0 ? std::optional(line.u_rms) : std::nullopt,
+          line.share, effect_of(line)};
 }
 
 }  // namespace
@@ -88,16 +90,18 @@ VolumeCauses volume_causes(const FitResult& given, std::span<const EffectFinding
       error_budget(extended, tool, default_conditions(extended), kBudgetCells, RotaryPoses::AtRest);
   result.tool = tool.name;
   result.total_rms = budget.total.rms;
+  const auto found = named_effects(added);
   for (const BudgetLine& line : budget.contributions) {
-    const bool found =
-        std::ranges::any_of(added, [&](const EffectFinding& effect) { return is_named(effect, line.name); });
-    if (line.rms >= kDoesNotMove && (found || is_effect_of(extended.identified, line.name)))
-      result.causes.push_back(cause_of_line(line, found));
+    const std::optional<EffectName> effect = effect_of(line);
+    if (line.rms < kDoesNotMove || !effect) continue;
+    const bool is_found =
+        std::ranges::find(found, *effect, &decltype(found)::value_type::first) != found.end();
+    result.causes.push_back(cause_of_line(line, is_found));
   }
-  for (const EffectFinding& effect : added) {
-    const bool moves = std::ranges::any_of(
-        result.causes, [&](const VolumeCause& cause) { return is_named(effect, cause.name); });
-    if (!moves && find_effect(effect.spec.kind) != nullptr) result.not_in_volume.push_back(effect.label);
+  for (const auto& effect : found) {
+    if (std::ranges::find(result.causes, std::optional(effect.first), &VolumeCause::effect) ==
+        result.causes.end())
+      result.not_in_volume.push_back(effect.second);
   }
   for (const BudgetLine& line : budget.causes) {
     if (line.name != kCauseOfEffects && line.rms >= kDoesNotMove)

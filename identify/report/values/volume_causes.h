@@ -18,6 +18,7 @@ struct VolumeCause {
   double rms = 0.0;         ///< displacement of the functional point over the volume, m
   std::optional<double> u;  ///< standard uncertainty of it, m; empty where it is not known
   double share = 0.0;       ///< of the mean square of the whole; negative: cancels part of the others
+  std::optional<EffectName> effect = {};  ///< of the model, where the cause is one
 };
 
 struct VolumeCauses {

@@ -48,10 +48,10 @@ TEST(ErrorBudget, IsTheHandCalculation) {
   const double exx = positioning.rms;
   EXPECT_NEAR(exx, a / std::sqrt(180.0), 0.01 * exx);
   EXPECT_NEAR(positioning.max, a / 6.0, 0.01 * a / 6.0);
-  EXPECT_EQ(positioning.depends_on, "x");
+  EXPECT_EQ(positioning.depends_on_text(), "x");
   const BudgetLine& reversal = line_named(budget.contributions, "reversal EYY");
   EXPECT_NEAR(reversal.rms, 0.5 * b, 1e-12);
-  EXPECT_EQ(reversal.depends_on, "dir_y");
+  EXPECT_EQ(reversal.depends_on_text(), "dir_y");
   EXPECT_NEAR(budget.total.rms, std::hypot(exx, 0.5 * b), 1e-12);
   EXPECT_NEAR(positioning.share, exx * exx / (exx * exx + 0.25 * b * b), 1e-9);
   EXPECT_NEAR(line_named(budget.causes, "positioning").share +

@@ -4,6 +4,7 @@
 
 #include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/session/session_tree.h"
+#include "volcal/identify/session/session_work.h"
 
 namespace volcal {
 namespace {
@@ -35,9 +36,6 @@ bool any_shape_moved(const std::vector<FamilyTest>& before, const std::vector<Fa
 /// linear in the parameters and in the shapes of effects, and which readings are no outliers any more.
 Session::RefittedModel Session::refitted(const Recipe& preview, const ModelState& state,
                                          const SessionProgress& progress) {
-  const auto tell = [&](const std::string& stage, double done) {
-    if (progress && !progress(stage, done)) throw SessionStopped("stopped at: " + stage);
-  };
   Recipe recipe = preview;
   /// `plain`, `all`: without effects, with the residuals of the fit.
   const auto make = [&recipe](const ModelState& plain, Projector all, const Refit& refit) {
@@ -64,7 +62,7 @@ Session::RefittedModel Session::refitted(const Recipe& preview, const ModelState
   }
   recipe.refit = std::make_shared<const Refit>(refit);
   if (!state.model().smoothing().empty()) {
-    tell("smoothing", 0.2);
+    report_stage(progress, "smoothing", 0.2);
     const ModelState at_noise = recipe.make();
     const Projector& projector = at_noise.projector();
     refit.smoothing = at_noise.model()
@@ -72,11 +70,11 @@ Session::RefittedModel Session::refitted(const Recipe& preview, const ModelState
                           .smoothing();
     recipe.refit = std::make_shared<const Refit>(refit);
   }
-  tell("the model at this noise", 0.4);
+  report_stage(progress, "the model at this noise", 0.4);
   const ModelState plain = recipe.with_residuals_of_fit();
   const auto all = plain.projector_of_all_readings();
   const RefittedModel found = make(plain, *all, refit);
-  tell("the exact model", 0.6);
+  report_stage(progress, "the exact model", 0.6);
   const LinearModel& model = found.state.model();
   std::vector<FamilyTest> moved = found.state.moved_effects(*found.all_readings);
   const std::vector<std::size_t> explained = found.state.explained_outliers();

@@ -7,6 +7,7 @@
 
 #include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/numeric/interruption.h"
+#include "volcal/identify/session/session_work.h"
 #include "volcal/identify/solve/adjustment.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/solve/normals/datum.h"
@@ -20,17 +21,13 @@ constexpr double kShareOfNoise = 0.9;  // with that of the noise
 constexpr int kRefitSteps = 3;
 constexpr double kMovedNoise = 0.1;  // of the variance: what the noise was found about is no more near
 
-void tell(const SessionProgress& progress, const std::string& stage, double done) {
-  if (progress && !progress(stage, done)) throw SessionStopped("stopped at: " + stage);
-}
-
 FitOptions fit_options(int threads, const SessionProgress& progress) {
   FitOptions options;
   options.threads = threads;
   options.outliers = OutlierPolicy::Remove;
   options.noise = NoisePolicy::White;  // found with the tests, as in a diagnosis
   options.progress = [progress](const std::string& stage, double done) {
-    tell(progress, stage, kShareOfFit * done);
+    report_stage(progress, stage, kShareOfFit * done);
   };
   return options;
 }
@@ -348,16 +345,16 @@ Session::FittedModel Session::Fitting::operator()(const std::shared_ptr<const Ca
                                                   const ModelSpec& model,
                                                   const SessionProgress& progress) const {
   FitResult result = fit(*campaign, model, fit_options(options.threads, progress));
-  tell(progress, "noise", kShareOfFit);
+  report_stage(progress, "noise", kShareOfFit);
   const LinearModel linear(*campaign, result);
   auto setting = std::make_shared<const SearchSetting>(linear, heldout_lines(linear, options.heldout_share),
                                                        std::vector<std::string>{}, options.threads, own);
   auto fitted =
       std::make_shared<const Fitted>(campaign, std::move(result), ModelState(linear, std::move(setting)));
-  tell(progress, "models against this noise", kShareOfNoise);
+  report_stage(progress, "models against this noise", kShareOfNoise);
   std::vector<std::optional<LadderStep>> figures;
   if (fitted->noise_variance() < least_variance) figures = figures_at(*fitted);
-  tell(progress, "done", 1.0);
+  report_stage(progress, "done", 1.0);
   return {std::move(fitted), std::move(figures)};
 }
 

@@ -13,6 +13,7 @@
 #include "volcal/identify/io/results/result_folder.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/criticism/diagnosis_text.h"
+#include "volcal/identify/session/session_work.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/text/text_file.h"
 
@@ -45,10 +46,6 @@ std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
-}
-
-void report_stage(const SessionProgress& progress, const std::string& stage, double done) {
-  if (progress && !progress(stage, done)) throw SessionStopped("stopped at: " + stage);
 }
 
 /// As `volcal fit` does.

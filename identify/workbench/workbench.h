@@ -3,9 +3,8 @@
 /// session on it, work that takes long in a thread of its own, exports, and what the page is sent
 /// (docs/workbench-protocol.md). For several threads at once.
 
-#include <filesystem>
+#include <condition_variable>
 #include <functional>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "volcal/identify/session/session_command.h"
 #include "volcal/identify/workbench/event_hub.h"
 #include "volcal/identify/workbench/frame.h"
+#include "volcal/identify/workbench/watched_files.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal::workbench {
@@ -31,9 +31,6 @@ struct WorkbenchOptions {
   bool confirm_behind = true;  ///< a full fit follows every linear preview
   Provenance provenance = {};
 };
-
-/// When files were written last, and how long they are; those that are not there are absent.
-using FileStamps = std::map<std::string, std::pair<std::filesystem::file_time_type, std::uintmax_t>>;
 
 struct Answer {
   int status = 200;
@@ -59,8 +56,8 @@ class Workbench {
   Workbench(const Workbench&) = delete;
   Workbench& operator=(const Workbench&) = delete;
 
-  /// `request`: the name behind /api/; `tab`: of the page's. Errors are answers.
-  Answer answer(const std::string& request, const std::string& body, const std::string& tab);
+  /// `name`: what stands behind /api/; `tab`: of the page's. Errors are answers.
+  Answer answer(const std::string& name, const std::string& body, const std::string& tab);
   EventHub& events() { return hub_; }
   bool wants_to_end() const;
   /// Until nothing is under way; for tests.
@@ -68,19 +65,18 @@ class Workbench {
 
  private:
   struct Job;
+  struct Request;
   enum class Phase { Loading, BadInput, Ready };
   using Lock = std::unique_lock<std::mutex>;
 
   void make_tests() const;
-  Json look(const std::string& request, const Json& body);
-  std::optional<std::string> look_framed(const std::string& request, const Json& body,
-                                         const std::string& tab);
-  Json act(const std::string& request, const Json& body, const std::string& tab);
   std::optional<std::string> work_of_the_user() const;
   void require_writer(const std::string& tab);
   void require_no_work() const;
   void load_again();
+  void cancel();
   void do_command(const SessionCommand& command);
+  std::string try_formula(const std::string& text, const std::vector<std::string>& parameters);
   void export_now(const std::string& what);
   Json state(const std::string& tab) const;
   void publish_state();

@@ -6,8 +6,8 @@
 
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/effect_findings.h"
+#include "volcal/identify/criticism/search/climb.h"
 #include "volcal/identify/criticism/search/model_tests.h"
-#include "volcal/identify/criticism/search/search.h"
 #include "volcal/identify/criticism/search/unknown_findings.h"
 #include "volcal/identify/session/hidden_effects.h"
 #include "volcal/identify/session/proposed_measurements.h"

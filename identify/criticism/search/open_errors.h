@@ -15,6 +15,7 @@
 
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "volcal/identify/criticism/search/model_state.h"
@@ -23,9 +24,9 @@ namespace volcal {
 
 class OpenErrors {
  public:
-  /// `left_out`: of the effects that were added, by their places. `state` outlives the object.
-  explicit OpenErrors(const ModelState& state, std::set<std::size_t> left_out = {})
-      : state_(state), left_out_(std::move(left_out)) {}
+  /// `left_out`: of the effects that were added, by their places.
+  explicit OpenErrors(ModelState state, std::set<std::size_t> left_out = {})
+      : state_(std::move(state)), left_out_(std::move(left_out)) {}
 
   /// The model holds error functions at zero that could come back.
   bool any() const;
@@ -35,7 +36,7 @@ class OpenErrors {
   const std::vector<FamilyTest>& tests();
 
  private:
-  const ModelState& state_;
+  ModelState state_;
   std::set<std::size_t> left_out_;
   std::optional<std::vector<FamilyTest>> tests_;  ///< once they are asked for
 };

@@ -141,6 +141,30 @@ class MadeUpTree(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("identify/noise:1: 18 sources", done.stdout)
 
+    def assert_length_rejected(self, *words):
+        done = check(self.root)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        for word in words:
+            self.assertIn(word, done.stdout)
+
+    def test_long_sources(self):
+        self.assert_accepted("identify/noise/a.cpp", *["//"] * 500)
+        self.write("identify/noise/a.cpp", *["//"] * 501)
+        self.assert_length_rejected("identify/noise/a.cpp:501: 501 lines", "500 are allowed")
+        self.write("scripts/long_sources.txt", "# today's", "identify/noise/a.cpp 501")
+        self.assertEqual(check(self.root).returncode, 0)
+        self.write("identify/noise/a.cpp", *["//"] * 502)
+        self.assert_length_rejected("identify/noise/a.cpp:502: 502 lines", "501 are allowed")
+
+    def test_the_list_of_long_sources_shrinks(self):
+        self.write("scripts/long_sources.txt", "identify/noise/a.cpp 510", "identify/noise/gone.cpp 520")
+        self.write("identify/noise/a.cpp", *["//"] * 505)
+        self.assert_length_rejected("scripts/long_sources.txt:1: identify/noise/a.cpp has 505 lines",
+                                    "scripts/long_sources.txt:2: identify/noise/gone.cpp is no longer")
+        self.write("scripts/long_sources.txt", "identify/noise/a.cpp 510")
+        self.write("identify/noise/a.cpp", *["//"] * 500)
+        self.assert_length_rejected("scripts/long_sources.txt:1: identify/noise/a.cpp is no longer", "off the list")
+
     def test_files_in_physics(self):
         for header in ("fstream", "filesystem"):
             self.assert_rejected("model/instruments/a.cpp", f"#include <{header}>", f"<{header}>")

@@ -4,11 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <regex>
-#include <sstream>
-#include <utility>
-
-#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
@@ -109,64 +104,6 @@ constexpr auto kShapes = std::to_array<EffectWord>({
     {"surface", "a smooth function of two or three variables that the readings alone decide", "empirical"},
 });
 
-/// "laser-tracer|laser-tracker|..."
-std::string any_instrument() {
-  static const std::regex special(R"([^A-Za-z0-9])");
-  std::string names;
-  for (const Instrument* instrument : instruments())
-    names += (names.empty() ? "" : "|") + std::regex_replace(instrument->schema().name, special, R"(\$&)");
-  return names;
-}
-
-/// Pattern of a word; only what stands for something in the files varies.
-std::regex expression_of(std::string_view pattern) {
-  const std::pair<std::string_view, std::string> places[] = {
-      {"dir_AXIS ...", "dir_[xyzabcuvw]( dir_[xyzabcuvw])*"},
-      {"AXIS ...", "[xyzabcuvw]( [xyzabcuvw])*"},
-      {"SYMBOL ...", "E[XYZABC]0?[XYZABCUVW]( E[XYZABC]0?[XYZABCUVW])*"},
-      {"SYMBOL", "E[XYZABC]0?[XYZABCUVW]"},
-      {"AXIS", "[xyzabcuvw]"},
-      {"PLANE", "[XYZABCUVW]{2}"},
-      {"RUN", "-?[0-9]+"},
-      {"TOOL", ".+"},
-      {"STATION", ".+"},
-      {"SETUP", ".+"},
-      {"CHANNEL", ".+"},
-      {"TARGET", ".+"},
-      {"VARIABLES", ".*"},
-      {"EXPRESSION", ".+"},
-      {"INSTRUMENT", any_instrument()},
-  };
-  std::string text;
-  while (!pattern.empty()) {
-    const auto* const place =
-        std::ranges::find_if(places, [&](const auto& each) { return pattern.starts_with(each.first); });
-    if (place != std::end(places)) {
-      text += place->second;
-      pattern.remove_prefix(place->first.size());
-      continue;
-    }
-    if (std::string_view("()-^").find(pattern.front()) != std::string_view::npos) text += '\\';
-    text += pattern.front();
-    pattern.remove_prefix(1);
-  }
-  return std::regex(text);
-}
-
-/// A kind that ends with a hyphen stands for all that start with it.
-bool is_of_kind(const EffectWord& word, const std::string& kind) {
-  if (word.kind.ends_with('-')) return kind.starts_with(word.kind);
-  return word.kind.empty() || word.kind == kind;
-}
-
-const EffectWord* find_in(std::span<const EffectWord> words, const std::string& kind,
-                          const std::string& text) {
-  const auto found = std::ranges::find_if(words, [&](const EffectWord& word) {
-    return is_of_kind(word, kind) && std::regex_match(text, expression_of(word.pattern));
-  });
-  return found == words.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 std::string full_name(const EffectName& name) {
@@ -203,13 +140,6 @@ std::span<const EffectWord> scan_words() {
     return words;
   }();
   return kScanWords;
-}
-
-const EffectWord* find_word(NamePart part, const EffectName& name) {
-  const std::string& text = part == NamePart::Target   ? name.target
-                            : part == NamePart::Driver ? name.driver
-                                                       : name.shape;
-  return find_in(effect_words(part), name.kind, text);
 }
 
 int complexity_rank(const std::vector<Variable>& variables, ScanDirection direction) {

@@ -45,8 +45,6 @@ enum class NamePart { Target, Driver, Shape };
 std::span<const EffectWord> effect_words(NamePart part);
 /// Words for what scans without a catalogue go through, in the order of Variable::Kind.
 std::span<const EffectWord> scan_words();
-/// The word that this part of a name is; nullptr when there is none.
-const EffectWord* find_word(NamePart part, const EffectName& name);
 
 /// How much has to be believed of what a scan saw, 0 = least: one variable before two, but for a station
 /// along its beam, which is a dead path and no parameter of the model where it shows; time before

@@ -10,12 +10,15 @@
 #include <vector>
 
 #include "tests/support/effect_campaign.h"
+#include "tests/support/find_word.h"
 #include "tests/support/hidden_studies.h"
 #include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
 namespace {
+
+using testing_support::find_word;
 
 constexpr NamePart kParts[] = {NamePart::Target, NamePart::Driver, NamePart::Shape};
 

@@ -1,8 +1,5 @@
 #include "volcal/identify/criticism/screening.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -15,7 +12,6 @@
 #include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/statistics/even_sample.h"
 #include "volcal/model/description/finding_codes.h"
-#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -88,12 +84,12 @@ double root_mean_square(const Eigen::VectorXd& moved) {
 }
 
 std::string words_of(const GenericTest& test) {
-  std::string text =
-      fmt::format("something that depends on {}, along {}", fmt::join(names_of(test.variables), " and "),
-                  name_of(test.direction.value()));
-  if (test.rotation) text += ", as " + test.rotation->name();
-  if (test.period > 0.0) text += fmt::format(", every {:.4g} mm", test.period * kPerMilli);
-  return text;
+  UnknownFinding finding;
+  finding.variables = test.variables;
+  finding.direction = test.direction.value();
+  finding.rotation = test.rotation;
+  finding.period = test.period;
+  return finding.placeholder() + ", along " + finding.action();
 }
 
 void consider_families(const LinearModel& model, const std::vector<Family>& families,

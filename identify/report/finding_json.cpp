@@ -32,6 +32,14 @@ Json meaning_json(const EffectName& name) {
   return {{"plain", kind == nullptr ? "" : kind->schema().summary}, {"usual_causes", ""}};
 }
 
+Json law_json(const FormulaFinding& law) {
+  return {{"label", law.label},
+          {"shape", law.shape_text},
+          {"amplitude", rounded(law.amplitude / law.si_per_unit, 4)},
+          {"U95", rounded(kCoverageFactor * law.u / law.si_per_unit, 2)},
+          {"unit", shown_unit(law.unit)}};
+}
+
 Json binned_json(const BinnedMean& means, double centre_factor, double value_factor) {
   return {{"centre", rounded_array(means.centre, centre_factor, 5)},
           {"mean", rounded_array(means.mean, value_factor, 4)},

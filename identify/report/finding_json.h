@@ -10,6 +10,8 @@ Json finding_json(const EffectFinding& effect);
 /// plain, usual_causes (effect_meanings.h); of a kind of the user's own its summary, of a change of the model
 /// nothing.
 Json meaning_json(const EffectName& name);
+/// label, shape, amplitude and U95 in `unit`.
+Json law_json(const FormulaFinding& law);
 /// What is drawn of it (surface_json.h), its laws and what is free.
 Json surface_json(const SurfaceFinding& surface);
 /// centre x factor, mean and noise in units of `value_unit`, count.

@@ -8,7 +8,7 @@
 
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/verdict.h"
-#include "volcal/identify/words/effect_meanings.h"
+#include "volcal/identify/report/finding_json.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/identify/workbench/columns.h"
 #include "volcal/model/description/units.h"
@@ -36,16 +36,6 @@ std::string probability_text(double log10_p) {
   const double rounded = std::log10(0.95);  // 9.5 and more of a power round to the next
   const double exponent = std::floor(log10_p - rounded);
   return fmt::format("{:.0f}e{:.0f}", std::pow(10.0, log10_p - exponent), exponent);
-}
-
-std::string words_of(const EffectFinding& effect) {
-  const EffectMeaning* meaning = find_meaning(effect.name.kind);
-  return meaning == nullptr ? std::string() : std::string(meaning->plain);
-}
-
-std::string causes_of(const EffectFinding& effect) {
-  const EffectMeaning* meaning = find_meaning(effect.name.kind);
-  return meaning == nullptr ? std::string() : std::string(meaning->usual_causes);
 }
 
 Json written_formula(const EffectSpec& spec) {
@@ -153,12 +143,13 @@ bool is_hidden(const EffectFinding& effect) {
 Json effect_json(const EffectFinding& effect) {
   Json amplitudes = Json::array();
   for (const AmplitudeFigure& figure : effect.amplitudes) amplitudes.push_back(amplitude_json(figure));
+  const Json meaning = report::meaning_json(effect.name);
   return {{"name", full_name(effect.name)},
           {"label", effect.label},
           {"kind", effect.name.kind},
           {"driver", effect.name.driver},
-          {"words", words_of(effect)},
-          {"causes", causes_of(effect)},
+          {"words", meaning["plain"]},
+          {"causes", meaning["usual_causes"]},
           {"amplitudes", std::move(amplitudes)},
           {"shape", effect.shape_text},
           {"p", std::isfinite(effect.log10_p) ? Json(probability_text(effect.log10_p)) : Json()},
@@ -188,7 +179,7 @@ Json models_json(const Session& session) {
 
 Json unknown_json(const UnknownFinding& finding, std::size_t number_of_it) {
   return {{"number", number_of_it},
-          {"label", "something that depends on " + finding.dependence() + " along " + finding.action()},
+          {"label", finding.placeholder() + " along " + finding.action()},
           {"words", sentence(unnamed(finding))},
           {"variables", names_of(finding.variables)},
           {"with_one_of", names_of(finding.with_one_of)},

@@ -43,6 +43,8 @@ std::string UnknownFinding::dependence() const {
   return text;
 }
 
+std::string UnknownFinding::placeholder() const { return "something that depends on " + dependence(); }
+
 std::string UnknownFinding::action() const {
   std::string text(name_of(direction));
   if (rotation) return text + ", as " + rotation->name();

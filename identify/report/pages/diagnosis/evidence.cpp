@@ -5,7 +5,6 @@
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/report/finding_json.h"
 #include "volcal/identify/report/numbers.h"
-#include "volcal/identify/result/result.h"
 
 namespace volcal::report {
 namespace {
@@ -21,14 +20,10 @@ Json list(const std::vector<EffectFinding>& effects) {
 Json asked_laws_json(const AskedLaws& asked) {
   Json rows = Json::array();
   for (const FormulaFinding& law : asked.laws) {
-    rows.push_back({{"label", law.label},
-                    {"shape", law.shape_text},
-                    {"amplitude", rounded(law.amplitude / law.si_per_unit, 4)},
-                    {"U95", rounded(kCoverageFactor * law.u / law.si_per_unit, 2)},
-                    {"unit", shown_unit(law.unit)},
-                    {"gain", rounded(law.gain, 4)},
-                    {"log10_p", rounded(law.log10_p, 4)},
-                    {"log_evidence", rounded(law.log_evidence, 4)}});
+    Json& row = rows.emplace_back(law_json(law));
+    row["gain"] = rounded(law.gain, 4);
+    row["log10_p"] = rounded(law.log10_p, 4);
+    row["log_evidence"] = rounded(law.log_evidence, 4);
   }
   return {{"label", asked.label},
           {"tried", asked.tried},

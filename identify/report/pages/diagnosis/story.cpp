@@ -133,9 +133,9 @@ Json after_json(const Diagnosis& diagnosis) {
   }
   for (const UnknownFinding& unknown : remaining_unknown(diagnosis)) {
     lines.push_back(
-        fmt::format("Still seen by the scan without a catalogue: something that depends on {}, along {}, "
+        fmt::format("Still seen by the scan without a catalogue: {}, along {}, "
                     "about {} RMS (log10 p {:.1f}).",
-                    unknown.dependence(), unknown.action(), micrometres(unknown.rms), unknown.log10_p));
+                    unknown.placeholder(), unknown.action(), micrometres(unknown.rms), unknown.log10_p));
     if (lines.size() == 5) break;
   }
   return lines;

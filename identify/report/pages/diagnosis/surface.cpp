@@ -27,13 +27,7 @@ DrawnSurface drawn(const SurfaceFinding& surface) {
 
 Json surface_json(const SurfaceFinding& surface) {
   Json formulas = Json::array();
-  for (const FormulaFinding& formula : surface.formulas) {
-    formulas.push_back({{"label", formula.label},
-                        {"shape", formula.shape_text},
-                        {"amplitude", rounded(formula.amplitude / formula.si_per_unit, 4)},
-                        {"U95", rounded(kCoverageFactor * formula.u / formula.si_per_unit, 2)},
-                        {"unit", shown_unit(formula.unit)}});
-  }
+  for (const FormulaFinding& formula : surface.formulas) formulas.push_back(law_json(formula));
   Json json = surface_json(drawn(surface), kCoverageFactor);
   json["log_evidence"] = rounded(surface.log_evidence, 3);
   json["effective_parameters"] = rounded(surface.effective_parameters, 2);

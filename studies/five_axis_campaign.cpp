@@ -6,6 +6,7 @@
 #include <random>
 
 #include "volcal/sim/measurement/measurements.h"
+#include "volcal/studies/files/five_axis_machines.h"
 
 namespace volcal::cli {
 namespace {
@@ -35,10 +36,6 @@ sim::ErrorFunction harmonic_function(std::mt19937_64& random, double size) {
     }
     return scale * value;
   };
-}
-
-AxisName tilting_axis(const Machine& machine) {
-  return machine.has_axis(AxisName::A) ? AxisName::A : AxisName::B;
 }
 
 /// Rotary positions in the order of measurement, linear axes at 0.

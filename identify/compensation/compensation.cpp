@@ -17,7 +17,7 @@ Compensation::Compensation(const Machine& machine, const AxisPosition& lines, Co
       along_(std::move(along)),
       lines_(lines),
       movable_(movable_directions(machine)) {
-  for (const AxisName name : linear_axes_of(machine)) {
+  for (const AxisName name : machine.main_linear_axes()) {
     const Axis& axis = machine.axis(name);
     Line line{.axis = name, .home = axis.home};
     line.at_home = on_line(line, axis.home, 1);

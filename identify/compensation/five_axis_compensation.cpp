@@ -259,7 +259,7 @@ void FiveAxisCompensation::require_turning_axes(const Machine& machine) const {
     for (Eigen::Index k = 0; k < 3; ++k) turns.col(k) = Vector3d(at.rotary_w.col(k)).cross(at.axis_w);
     turns_it |= Eigen::JacobiSVD<Matrix3d>(turns).singularValues()[1] > kTurning;
   }
-  if (linear_axes_of(machine).size() == 3 && turns_it) return;
+  if (machine.main_linear_axes().size() == 3 && turns_it) return;
   throw InputError(
       {},
       settings_.type.name() + " on " + machine.structure.code +

@@ -77,7 +77,7 @@ class ProductSampler {
         angular_(sampled_compensation(format, result, angular_part(options))) {
     tables_.lines = lines_;
     const Compensation ideal = sampled_compensation(format, result, options);
-    const std::vector<AxisName> axes = linear_axes_of(machine_);
+    const std::vector<AxisName> axes = machine_.main_linear_axes();
     for (const AxisName input : axes) {
       const Axis& axis = machine_.axis(input);
       const auto positions = correction_positions(axis, options.step, format.limits.equidistant);
@@ -138,7 +138,7 @@ class ProductSampler {
   }
 
   void add_products(const AngularPair& pair, AxisName turning, AxisName lever) {
-    for (const AxisName output : linear_axes_of(machine_)) {
+    for (const AxisName output : machine_.main_linear_axes()) {
       AxisTable angle{.input = turning, .position = positions(turning), .forward = {}, .backward = {}};
       double largest = 0.0;
       for (const double q : angle.position) {

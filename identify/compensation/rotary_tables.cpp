@@ -59,6 +59,15 @@ std::vector<RotaryGrid> rotary_grids_to_correct(const FitResult& result, const T
   return grids;
 }
 
+RotaryShares twist_shares(const TableFormat& format, CompensationType type) {
+  if (type.has(CompensationPart::RotaryRadialAxial) != type.has(CompensationPart::RotaryAngular))
+    throw InputError({}, std::string(format.name) + " holds R-RAX and R-ANG together alone: a twist has both",
+                     "give both, or R-VOL");
+  return {.own = false,
+          .location = type.has(CompensationPart::RotaryLocation),
+          .motion = type.has(CompensationPart::RotaryAngular)};
+}
+
 std::vector<SampledTable> sample_rotary_positioning(const TableFormat& format, const FitResult& result,
                                                     const TableFormatOptions& options) {
   FiveAxisSettings settings;

@@ -29,6 +29,10 @@ JointErrorSource rotary_errors_to_correct(const FitResult& result, const TableFo
 std::vector<RotaryGrid> rotary_grids_to_correct(const FitResult& result, const TableFormatOptions& options,
                                                 const RotaryShares& shares = {});
 
+/// What a type corrects of twists by the linear axes. Throws InputError for R-RAX without R-ANG and the other
+/// way round.
+RotaryShares twist_shares(const TableFormat& format, CompensationType type);
+
 /// A displacement of the functional point against the workpiece, m, machine coordinates with the rotary axes
 /// at 0, as the location error of the outermost axis that turns the workpiece; nothing where there is none.
 void add_displacement_of_table(const Structure& structure, const Eigen::Vector3d& displacement,

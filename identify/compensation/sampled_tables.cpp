@@ -57,11 +57,11 @@ std::vector<SampledTable> sample_axis_tables(const TableFormat& format, const Fi
                                              const TableFormatOptions& options) {
   const Compensation ideal = sampled_compensation(format, result, options);
   std::vector<SampledTable> tables;
-  for (const AxisName input : linear_axes_of(result.machine)) {
+  for (const AxisName input : result.machine.main_linear_axes()) {
     const Axis& axis = result.machine.axis(input);
     const auto positions = correction_positions(axis, options.step, format.limits.equidistant);
     require_points(format, axis, positions.size());
-    for (const AxisName output : linear_axes_of(result.machine)) {
+    for (const AxisName output : result.machine.main_linear_axes()) {
       if (!moves(options.type, input, output)) continue;
       tables.push_back(
           {output, sampled_axis(ideal, input, output, positions, format.limits.both_directions)});
@@ -75,7 +75,7 @@ CorrectionGrid sample_grid(const TableFormat& format, const FitResult& result,
   const Compensation ideal = sampled_compensation(format, result, options);
   CorrectionGrid grid;
   grid.nodes = {{{0.0}, {0.0}, {0.0}}};
-  for (const AxisName axis : linear_axes_of(result.machine)) {
+  for (const AxisName axis : result.machine.main_linear_axes()) {
     auto& nodes = grid.nodes[index_of(axis)];
     nodes = correction_positions(result.machine.axis(axis), options.step, format.limits.equidistant);
     require_points(format, result.machine.axis(axis), nodes.size());

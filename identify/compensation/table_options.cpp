@@ -135,7 +135,7 @@ void check_table_options(const TableFormat& format, const FitResult& result,
         "write --format csv, which holds the errors of every axis; or leave the axis out "
         "of the structure where it stands still");
   check_type(format, result, options.type);
-  if (linear_axes_of(result.machine).empty())
+  if (result.machine.main_linear_axes().empty())
     throw InputError({}, "the machine has no linear axis", "compensation tables are for linear axes");
   check_settings(format, options);
   tool_of(result.machine, options);

@@ -40,7 +40,7 @@ std::vector<double> of_all_setups(const Campaign& campaign, const Column& column
 /// Lattice of the measured positions of the linear axes, the others at 0.
 std::vector<AxisPosition> lattice(const Campaign& campaign) {
   std::vector<AxisPosition> poses(1);
-  for (const AxisName axis : linear_axes(campaign.machine)) {
+  for (const AxisName axis : campaign.machine.linear_axes()) {
     const MeasuredRange range = measured_range(campaign, axis);
     const int points = range.max > range.min ? kPointsPerAxis : 1;
     std::vector<AxisPosition> more;
@@ -261,7 +261,7 @@ class SetJudge {
     }
     member.difference = of_point(where).norm();
     const auto pose = static_cast<std::size_t>(where) % poses_.size();
-    for (const AxisName axis : linear_axes(reached_.model().campaign().machine))
+    for (const AxisName axis : reached_.model().campaign().machine.linear_axes())
       member.at.push_back(poses_[pose][index_of(axis)]);
     if (!(member.difference > 0.0)) {
       member.difference_u = 0.0;

@@ -72,9 +72,9 @@ class Realignment {
       : old_(result), to_(alignment), machine_(result.machine) {
     machine_.datum = alignment.datum;
     direction_.fill(VectorRows::Zero(3, columns()));
-    for (const AxisName axis : linear_axes(machine_))
+    for (const AxisName axis : machine_.linear_axes())
       if (alignment.origin) axis_of(axis).home = (*alignment.origin)[index_of(axis)];
-    for (const AxisName axis : linear_axes(machine_)) direction_[index_of(axis)] = direction(axis);
+    for (const AxisName axis : machine_.linear_axes()) direction_[index_of(axis)] = direction(axis);
     phi_ = frame_rotation();
   }
 
@@ -383,7 +383,7 @@ class Realignment {
 std::string alignment_words(const FitResult& result) {
   std::string text = "primary " + std::string(1, letter_of(result.machine.datum.primary)) + ", secondary " +
                      letter_of(result.machine.datum.secondary) + ", origin";
-  for (const AxisName axis : linear_axes(result.machine)) {
+  for (const AxisName axis : result.machine.linear_axes()) {
     std::string value = std::to_string(result.machine.axis(axis).home * kPerMilli);
     value.erase(value.find_last_not_of('0') + 1);
     if (value.back() == '.') value.pop_back();

@@ -33,7 +33,7 @@ void check_origin(const Machine& machine, const AxisPosition& origin) {
           {}, std::string("an origin has linear axes only, and this one names ") + letter_of(axis.name),
           std::string("leave ") + letter_of(axis.name) + " out: errors of rotary axes keep their own zero");
   }
-  for (const AxisName name : linear_axes(machine)) {
+  for (const AxisName name : machine.linear_axes()) {
     const Axis& axis = machine.axis(name);
     const double q = origin[index_of(name)];
     if (q < axis.travel_min - kSameOrigin || q > axis.travel_max + kSameOrigin)
@@ -43,7 +43,7 @@ void check_origin(const Machine& machine, const AxisPosition& origin) {
 }
 
 bool moves_origin(const Machine& machine, const Alignment& alignment) {
-  return alignment.origin && std::ranges::any_of(linear_axes(machine), [&](AxisName axis) {
+  return alignment.origin && std::ranges::any_of(machine.linear_axes(), [&](AxisName axis) {
            return std::abs((*alignment.origin)[index_of(axis)] - machine.axis(axis).home) > kSameOrigin;
          });
 }

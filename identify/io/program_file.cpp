@@ -105,9 +105,4 @@ void AtomicFile::commit() {
   file_ = nullptr;
 }
 
-bool same_file(const std::string& one, const std::string& other) {
-  std::error_code error;
-  return std::filesystem::equivalent(one, other, error) && !error;
-}
-
 }  // namespace volcal

@@ -61,7 +61,4 @@ class AtomicFile {
   std::FILE* file_ = nullptr;
 };
 
-/// Both names lead to one file that exists.
-bool same_file(const std::string& one, const std::string& other);
-
 }  // namespace volcal

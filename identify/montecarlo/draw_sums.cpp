@@ -71,7 +71,8 @@ void StudySums::close_sequence() {
   const auto n = static_cast<double>(open_.draws);
   for (std::size_t quantity = 0; quantity < quantities(); ++quantity) {
     const auto index = static_cast<Eigen::Index>(quantity);
-    const CoverageInterval interval = symmetric_interval(open_counts_.of(quantity, open_.draws), kCoverage);
+    const CoverageInterval interval =
+        symmetric_interval(open_counts_.of(quantity, open_.draws), kCoverageProbability);
     const double figures[kFigures] = {open_.sum[index] / n,
                                       standard_deviation(open_.sum[index], open_.squares[index], open_.draws),
                                       interval.low, interval.high};

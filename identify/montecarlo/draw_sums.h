@@ -13,7 +13,7 @@
 
 namespace volcal {
 
-inline constexpr double kCoverage = 0.95;
+inline constexpr double kCoverageProbability = 0.95;
 /// Bins over +-kHistogramReach u; the outer ones take what lies beyond. A quantile from bins of 0.004 u is
 /// exact to far less than its scatter in 10^6 draws, 0.003 u.
 inline constexpr std::size_t kHistogramBins = 4096;

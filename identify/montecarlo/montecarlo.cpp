@@ -461,11 +461,11 @@ class MonteCarloStudy::Work {
     result.u = sums_.deviation(i) * unit;
     result.bias = sums_.mean(i) * unit;
     result.bias_error = result.u / std::sqrt(static_cast<double>(sums_.draws()));
-    const double reach = normal_quantile(0.5 + 0.5 * kCoverage) * result.u_linear;
+    const double reach = normal_quantile(0.5 + 0.5 * kCoverageProbability) * result.u_linear;
     const double centre = result.quantity.estimate + result.bias_linear;
     result.linear = {centre - reach, centre + reach};
-    result.symmetric = from_t(symmetric_interval(sums_.histogram(i), kCoverage), i);
-    result.shortest = from_t(shortest_interval(sums_.histogram(i), kCoverage), i);
+    result.symmetric = from_t(symmetric_interval(sums_.histogram(i), kCoverageProbability), i);
+    result.shortest = from_t(shortest_interval(sums_.histogram(i), kCoverageProbability), i);
     result.tolerance = tolerance_of_draws(i);
     result.difference = std::max(std::abs(result.linear.low - result.symmetric.low),
                                  std::abs(result.linear.high - result.symmetric.high));

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <tuple>
 
 #include "volcal/identify/planning/registry.h"
 #include "volcal/identify/planning/swept_volume.h"
+#include "volcal/identify/planning/uniform_random.h"
 
 namespace volcal {
 namespace {
@@ -43,9 +43,6 @@ double run_duration(const PlanRun& run, const PlanSettings& settings) {
   }
   return time;
 }
-
-/// Uniform in -1 ... 1, the same with every standard library.
-double even(std::mt19937_64& random) { return 2.0 * (static_cast<double>(random() >> 11U) * 0x1p-53) - 1.0; }
 
 /// There and back without a stop, already on the way at the first; axes that rest count as approached in the
 /// + direction.
@@ -209,7 +206,7 @@ std::vector<PlanPosition> grid_over_travel(const Machine& machine, const Eigen::
           const int d = direction_of(axis.name);
           const double step = axis.travel() / (per_axis[d] - 1);
           const int place = each.cell[static_cast<std::size_t>(d)];
-          q = axis.travel_min + step * (place + jitter * even(random));
+          q = axis.travel_min + step * (place + jitter * symmetric_uniform(random));
           q = std::clamp(programmed_position(q), axis.travel_min, axis.travel_max);
         }
         positions.push_back(each);

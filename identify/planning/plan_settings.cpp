@@ -87,7 +87,7 @@ void check_plan_settings(const PlanSettings& settings) {
   if (settings.machine.tools.empty()) {
     fail("the machine has no tool", "add a [tools.NAME] table to its file: where the reflector is held");
   }
-  const std::vector<AxisName> linear = linear_axes(settings.machine);
+  const std::vector<AxisName> linear = settings.machine.linear_axes();
   if (linear.size() < 2)
     fail("the machine has fewer than two linear axes", "plan for machines with two of X, Y and Z or more");
   if (linear.size() == 2 && plan_instrument_of(settings).turns_rotary_axes())

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <random>
 
+#include "volcal/identify/planning/uniform_random.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/unknowns.h"
 
@@ -21,11 +21,6 @@ constexpr double kCircleShare = 0.7;  // of the region's half width: a textbook'
 double in_tenths_of_degrees(double angle) {
   constexpr double kTenth = std::numbers::pi / 1800.0;
   return std::round(angle / kTenth) * kTenth;
-}
-
-/// Uniform in -1 ... 1, the same with every standard library.
-double evenly(std::mt19937_64& random) {
-  return 2.0 * (static_cast<double>(random() >> 11U) * 0x1p-53) - 1.0;
 }
 
 std::vector<int> node_counts(const std::vector<RotaryStretch>& stretches, std::size_t positions) {
@@ -150,7 +145,7 @@ std::vector<PlanPosition> rotary_grid(const Machine& machine, std::size_t positi
   for_each_cell(counts, [&](const std::array<int, 3>& cell) {
     PlanPosition each{home_position(machine), cell};
     for (std::size_t a = 0; a < stretches.size(); ++a) {
-      const double moved = cell[a] + jitter * evenly(random);
+      const double moved = cell[a] + jitter * symmetric_uniform(random);
       const double q = in_tenths_of_degrees(stretches[a].node(moved, counts[a]));
       each.position[index_of(stretches[a].axis)] = std::clamp(q, stretches[a].min, stretches[a].max);
     }

@@ -104,7 +104,7 @@ std::optional<AxisPosition> SweptVolume::position_at(const Eigen::Vector3d& want
 std::optional<AxisPosition> SweptVolume::position_at(const Eigen::Vector3d& wanted_w, std::size_t tool,
                                                      const AxisPosition& rotary) const {
   AxisPosition position = rotary;
-  const std::vector<AxisName> axes = linear_axes(settings_.machine);
+  const std::vector<AxisName> axes = settings_.machine.linear_axes();
   for (const AxisName name : axes) position[index_of(name)] = 0.0;
   const Eigen::Vector3d at_zero = point_w(position, tool);
   Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();

@@ -240,7 +240,7 @@ ProgramErrors program_errors(const FitResult& result, const std::string& tool_na
     if (!is_rotary(group.axis)) add_pieces(*group.basis, errors.pieces[index_of(group.axis)]);
   }
   const MachineEffects effects(result, tool, conditions);
-  for (const AxisName axis : linear_axes_of(result.machine)) {
+  for (const AxisName axis : result.machine.main_linear_axes()) {
     auto& ends = errors.pieces[index_of(axis)];
     for (const double end : {errors.measured.min[index_of(axis)], errors.measured.max[index_of(axis)]}) {
       if (std::isfinite(end)) ends.push_back(end);

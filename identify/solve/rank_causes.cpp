@@ -74,11 +74,6 @@ bool are_too_few(const std::vector<double>& positions, int unknowns) {
   return gap > kPiecesOfAGap * (positions.back() - positions.front()) / unknowns;
 }
 
-bool is_on_workpiece_side(const Machine& machine, AxisName axis) {
-  const auto joint = std::ranges::find(machine.structure.joints, axis, &Joint::axis);
-  return joint != machine.structure.joints.end() && joint->workpiece_side;
-}
-
 /// The axis of an error function whose readings stand at one or two positions of it.
 std::optional<AxisName> axis_at_few_positions(const Campaign& campaign, const std::string& name) {
   const auto symbol = ErrorSymbol::parse(name);
@@ -215,7 +210,8 @@ Finding cause_of_unseen(const Campaign& campaign, const std::string& name) {
   const auto symbol = ErrorSymbol::parse(name);
   if (symbol && is_rotation(symbol->component)) {
     const int k = direction_of(symbol->component);
-    const bool on_table = is_rotary(symbol->axis) && is_on_workpiece_side(campaign.machine, symbol->axis);
+    const bool on_table =
+        is_rotary(symbol->axis) && campaign.machine.structure.is_on_workpiece_side(symbol->axis);
     const double sideways =
         largest_sideways_offset(campaign.machine, tools_moved_by(campaign, symbol->axis), k);
     const bool on_axis = !on_table && sideways < kOnAxis;

@@ -296,6 +296,13 @@ const Breakdown* Comparison::find(const std::string& by) const {
   return found == breakdowns.end() ? nullptr : &*found;
 }
 
+const ComparisonCell* Comparison::find_cell(const std::string& by, const std::string& label) const {
+  const Breakdown* breakdown = find(by);
+  if (breakdown == nullptr) return nullptr;
+  const auto found = std::ranges::find(breakdown->cells, label, &ComparisonCell::label);
+  return found == breakdown->cells.end() ? nullptr : &*found;
+}
+
 Comparison compare(const Campaign& campaign, std::span<const ResidualRecord> records,
                    const ComparisonOptions& options) {
   const std::vector<std::vector<bool>> is_angle = angle_channels(campaign);

@@ -58,6 +58,7 @@ struct Comparison {
   std::vector<std::size_t> worst;  ///< indices of records by falling |residual / sigma|, removed ones too
 
   const Breakdown* find(const std::string& by) const;
+  const ComparisonCell* find_cell(const std::string& by, const std::string& label) const;
 };
 
 /// Breakdowns that would have a single cell (one tool, an axis that never moves, no time column) are left

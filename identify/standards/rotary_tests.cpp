@@ -41,7 +41,7 @@ double sense_of_reading(const Campaign& campaign, const Setup& setup, AxisName a
   const KinematicChain chain(campaign.machine);
   const Vector3d read_w = setup.options.vector("axis").value_or(Vector3d::Zero()).normalized();
   const JointLever lever =
-      lever_of(chain, commanded_position(setup.readings, 0), campaign.machine.tools[setup.tool].offset, axis);
+      lever_of(chain, setup.readings.commanded_position(0), campaign.machine.tools[setup.tool].offset, axis);
   const Vector3d axis_w = lever.rotation_ws.col(direction_of(axis));
   if (read_w.cross(axis_w).norm() > kAlongAxis || read_w.isZero()) return 0.0;
   const double sense = read_w.dot(axis_w) > 0.0 ? 1.0 : -1.0;
@@ -96,7 +96,7 @@ TurnedSphere turned_sphere(const Campaign& campaign, const Setup& setup, AxisNam
   TurnedSphere sphere{&setup, axis, 1.0, 0.0, {}, {}, {}, notes_on_removed(values)};
   for (std::size_t row = 0; row < setup.readings.size(); ++row) {
     if (!values.has(row)) continue;
-    const AxisPosition position = commanded_position(setup.readings, row);
+    const AxisPosition position = setup.readings.commanded_position(row);
     const JointLever lever = lever_of(chain, position, tool, axis);
     sphere.turn_sense = lever.workpiece_side ? -1.0 : 1.0;
     sphere.height = lever.arm_s[direction_of(axis)];

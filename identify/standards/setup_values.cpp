@@ -39,15 +39,6 @@ std::vector<Finding> notes_on_removed(const SetupValues& values) {
   return {{FindingCode::StandardsRemovedReadingsUsed, {{"readings", std::int64_t{values.removed}}}}};
 }
 
-AxisPosition commanded_position(const Readings& readings, std::size_t row) {
-  AxisPosition position{};
-  for (const AxisName axis : kAllAxes) {
-    const auto& column = readings.position[index_of(axis)];
-    if (!column.empty()) position[index_of(axis)] = column[row];
-  }
-  return position;
-}
-
 std::vector<AxisName> moving_axes(const Setup& setup) {
   std::vector<AxisName> moving;
   for (const AxisName axis : kAllAxes) {

@@ -27,8 +27,6 @@ std::vector<SetupValues> values_by_setup(const Campaign& campaign, std::span<con
 /// That figures use readings which the adjustment left out.
 std::vector<Finding> notes_on_removed(const SetupValues& values);
 
-AxisPosition commanded_position(const Readings& readings, std::size_t row);
-
 /// Axes whose commanded positions differ within the setup by more than scatter (kStandingRange).
 std::vector<AxisName> moving_axes(const Setup& setup);
 

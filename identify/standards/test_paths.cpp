@@ -26,15 +26,6 @@ using Rows = std::vector<std::size_t>;
 template <class Path>
 using PathOrReason = std::variant<Path, FindingCode>;
 
-AxisPosition axis_position(const Readings& readings, std::size_t row) {
-  AxisPosition position{};
-  for (const AxisName axis : kAllAxes) {
-    const auto& column = readings.position[index_of(axis)];
-    if (!column.empty()) position[index_of(axis)] = column[row];
-  }
-  return position;
-}
-
 /// Commanded positions of a setup: of the linear axes, and of the functional point.
 struct CommandedPoints {
   CommandedPoints(const Campaign& campaign, const Setup& commanded_setup)
@@ -43,7 +34,7 @@ struct CommandedPoints {
         tool_offset(campaign.machine.tools[setup.tool].offset),
         point_w(nominal_points_w(campaign, setup)) {
     for (std::size_t row = 0; row < setup.readings.size(); ++row) {
-      const AxisPosition position = axis_position(setup.readings, row);
+      const AxisPosition position = setup.readings.commanded_position(row);
       linear.emplace_back(position[0], position[1], position[2]);
     }
     for (const AxisName axis : kParallelAxes) take_parallel(axis);
@@ -87,7 +78,7 @@ struct CommandedPoints {
 
   /// Motion of the functional point per metre of an axis.
   Vector3d axis_direction_w(std::size_t row, AxisName axis) const {
-    AxisPosition position = axis_position(setup.readings, row);
+    AxisPosition position = setup.readings.commanded_position(row);
     const Vector3d here = chain.nominal_point_w(position, tool_offset);
     position[index_of(axis)] += 1.0;
     return chain.nominal_point_w(position, tool_offset) - here;
@@ -362,8 +353,8 @@ std::vector<Vector3d> nominal_points_w(const Campaign& campaign, const Setup& se
   const KinematicChain chain(campaign.machine);
   std::vector<Vector3d> points;
   for (std::size_t row = 0; row < setup.readings.size(); ++row) {
-    points.push_back(
-        chain.nominal_point_w(axis_position(setup.readings, row), campaign.machine.tools[setup.tool].offset));
+    points.push_back(chain.nominal_point_w(setup.readings.commanded_position(row),
+                                           campaign.machine.tools[setup.tool].offset));
   }
   return points;
 }

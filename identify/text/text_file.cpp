@@ -183,6 +183,11 @@ void write_text_file(const std::string& path, const std::string& text) {
   placing.done();
 }
 
+bool same_file(const std::string& one, const std::string& other) {
+  std::error_code error;
+  return std::filesystem::equivalent(one, other, error) && !error;
+}
+
 std::string number_text(double value, int digits) { return fmt::format("{:.{}g}", value, digits); }
 
 }  // namespace volcal

@@ -52,6 +52,9 @@ std::string missing_remedy(const std::string& path, const std::string& otherwise
 /// Path that `file` names in a line of `from`: relative paths count from the folder of `from`.
 std::string resolve_path(const std::string& from, const std::string& file);
 
+/// Both paths lead to one file that exists.
+bool same_file(const std::string& one, const std::string& other);
+
 /// A name or a value from a file as it may appear in a message: one line, printable, not longer than 60
 /// characters.
 std::string printable(const std::string& text);

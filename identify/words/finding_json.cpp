@@ -1,32 +1,15 @@
 #include "volcal/identify/words/finding_json.h"
 
-#include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "volcal/identify/text/json_number.h"
 #include "volcal/identify/words/sentences.h"
 
 namespace volcal {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// JSON knows no number that is not finite.
-Json number_json(double value) {
-  if (std::isfinite(value)) return value;
-  if (std::isnan(value)) return "nan";
-  return value > 0.0 ? "inf" : "-inf";
-}
-
-double number_from(const Json& json) {
-  if (!json.is_string()) return json.get<double>();
-  const auto name = json.get<std::string>();
-  if (name == "nan") return std::numeric_limits<double>::quiet_NaN();
-  if (name == "inf") return std::numeric_limits<double>::infinity();
-  if (name == "-inf") return -std::numeric_limits<double>::infinity();
-  throw std::invalid_argument("a finding holds a text for a number");
-}
 
 Json value_json(const FindingNumber& number) {
   Json json = {{"si", number_json(number.si)}};

@@ -2,6 +2,14 @@
 
 namespace volcal {
 
+std::array<double, kAxisCount> Readings::commanded_position(std::size_t row) const {
+  std::array<double, kAxisCount> commanded{};
+  for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+    if (!position[axis].empty()) commanded[axis] = position[axis][row];
+  }
+  return commanded;
+}
+
 std::vector<bool> Setup::rows_left_out() const {
   std::vector<std::size_t> channels(left_out.empty() ? 0 : readings.size(), 0);
   for (const LeftOutReading& reading : left_out) ++channels[reading.row];

@@ -31,6 +31,8 @@ struct Readings {
 
   std::size_t size() const { return source_line.size(); }
   std::size_t channels() const { return value.size(); }
+  /// By axis, m or rad; 0 for axes without a column.
+  std::array<double, kAxisCount> commanded_position(std::size_t row) const;
 };
 
 /// A reading known to be wrong: no adjustment and no figure rests on it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <span>
 #include <stdexcept>
 
 #include "volcal/model/description/errors.h"
@@ -90,10 +91,27 @@ class StructureReader {
   bool seen_tool_ = false;
 };
 
+std::vector<AxisName> axes_among(std::span<const AxisName> names, const Machine& machine) {
+  std::vector<AxisName> found;
+  for (const AxisName name : names) {
+    if (machine.has_axis(name)) found.push_back(name);
+  }
+  return found;
+}
+
 }  // namespace
 
 Structure Structure::parse(const std::string& code, const std::string& file, int line) {
   return StructureReader(code, {file, line}).read();
+}
+
+bool Structure::has_axis(AxisName axis) const {
+  return std::ranges::find(joints, axis, &Joint::axis) != joints.end();
+}
+
+bool Structure::is_on_workpiece_side(AxisName axis) const {
+  const auto joint = std::ranges::find(joints, axis, &Joint::axis);
+  return joint != joints.end() && joint->workpiece_side;
 }
 
 AxisName Datum::third() const {
@@ -121,10 +139,20 @@ bool Machine::has_axis(AxisName wanted) const {
   return std::ranges::any_of(axes, [&](const Axis& axis) { return axis.name == wanted; });
 }
 
-std::vector<AxisName> Machine::parallel_axes() const {
+std::vector<AxisName> Machine::main_linear_axes() const { return axes_among(kLinearAxes, *this); }
+
+std::vector<AxisName> Machine::parallel_axes() const { return axes_among(kParallelAxes, *this); }
+
+std::vector<AxisName> Machine::linear_axes() const {
+  std::vector<AxisName> found = main_linear_axes();
+  for (const AxisName axis : parallel_axes()) found.push_back(axis);
+  return found;
+}
+
+std::vector<AxisName> Machine::rotary_axes() const {
   std::vector<AxisName> found;
-  for (const AxisName axis : kParallelAxes) {
-    if (has_axis(axis)) found.push_back(axis);
+  for (const Axis& axis : axes) {
+    if (is_rotary(axis.name)) found.push_back(axis.name);
   }
   return found;
 }

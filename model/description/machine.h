@@ -23,6 +23,9 @@ struct Structure {
 
   /// Reads a structural code. Throws InputError naming what is wrong; `place` says where the code stands.
   static Structure parse(const std::string& code, const std::string& file = {}, int line = 0);
+
+  bool has_axis(AxisName axis) const;
+  bool is_on_workpiece_side(AxisName axis) const;  ///< false for an axis that is not there
 };
 
 /// Thermal expansion of an axis's scale: reading channel and coefficient with the uncertainty its users
@@ -76,7 +79,10 @@ struct Machine {
 
   const Axis& axis(AxisName wanted) const;  ///< throws std::out_of_range
   bool has_axis(AxisName wanted) const;
-  std::vector<AxisName> parallel_axes() const;  ///< U, V, W, of which the machine has them
+  std::vector<AxisName> main_linear_axes() const;  ///< of X Y Z those of the machine, in this order
+  std::vector<AxisName> parallel_axes() const;     ///< of U V W those of the machine, in this order
+  std::vector<AxisName> linear_axes() const;       ///< the main ones, then the parallel ones
+  std::vector<AxisName> rotary_axes() const;       ///< in the structure's order
   std::optional<std::size_t> tool_index(const std::string& wanted) const;
 };
 

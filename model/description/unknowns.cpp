@@ -35,18 +35,9 @@ bool is_along_axis(const LocationSymbol& symbol) {
 
 }  // namespace
 
-std::vector<AxisName> linear_axes(const Machine& machine) {
-  std::vector<AxisName> axes;
-  for (const AxisName axis : kLinearAxes) {
-    if (machine.has_axis(axis)) axes.push_back(axis);
-  }
-  for (const AxisName axis : machine.parallel_axes()) axes.push_back(axis);
-  return axes;
-}
-
 std::vector<ErrorSymbol> linear_axis_motions(const Machine& machine) {
   std::vector<ErrorSymbol> symbols;
-  for (const AxisName axis : linear_axes(machine)) add_motions(axis, symbols);
+  for (const AxisName axis : machine.linear_axes()) add_motions(axis, symbols);
   return symbols;
 }
 

@@ -7,15 +7,6 @@
 namespace volcal {
 namespace {
 
-AxisPosition position_of_row(const Setup& setup, std::size_t row) {
-  AxisPosition position{};
-  for (const AxisName axis : kAllAxes) {
-    const std::vector<double>& own = setup.readings.position[index_of(axis)];
-    if (!own.empty()) position[index_of(axis)] = own[row];
-  }
-  return position;
-}
-
 /// The workpiece's side of the machine alone: its "tool" is the bed.
 Machine workpiece_side(Machine machine) {
   std::erase_if(machine.structure.joints, [](const Joint& joint) { return !joint.workpiece_side; });
@@ -41,7 +32,7 @@ std::vector<ReadingFrame> reading_frames(const SetupContext& context) {
   const bool of_tool = *context.setup.options.text("frame") == "tool";
   const KinematicChain chain(of_tool ? context.machine : workpiece_side(context.machine));
   for (std::size_t row = 0; row < frames.size(); ++row) {
-    const AxisPosition position = position_of_row(context.setup, row);
+    const AxisPosition position = context.setup.readings.commanded_position(row);
     frames[row].rotation = chain.nominal_rotation_wt(position).transpose();
     if (!of_tool) frames[row].origin_w = chain.nominal_point_w(position, Eigen::Vector3d::Zero());
   }
@@ -52,7 +43,7 @@ std::vector<Eigen::Matrix3d> rotations_to_tool(const SetupContext& context) {
   const KinematicChain chain(context.machine);
   std::vector<Eigen::Matrix3d> rotations;
   for (const ReadingFrame& frame : reading_frames(context)) {
-    const AxisPosition position = position_of_row(context.setup, rotations.size());
+    const AxisPosition position = context.setup.readings.commanded_position(rotations.size());
     rotations.emplace_back((frame.rotation * chain.nominal_rotation_wt(position)).transpose());
   }
   return rotations;

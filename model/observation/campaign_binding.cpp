@@ -344,7 +344,7 @@ class CampaignBinder {
     context.nominal_point_w.reserve(setup.readings.size());
     for (std::size_t row = 0; row < setup.readings.size(); ++row) {
       context.nominal_point_w.push_back(
-          chain_.nominal_point_w(commanded_position(machine_, setup.readings, row), tool_offset));
+          chain_.nominal_point_w(setup.readings.commanded_position(row), tool_offset));
     }
     return instrument->bind(std::move(context));
   }
@@ -405,8 +405,8 @@ std::vector<SetupView> setup_views(const Campaign& campaign, const CampaignBindi
     view.histories = std::make_shared<KeptHistories>();
     view.nominal_point_w.reserve(setup.readings.size());
     for (std::size_t row = 0; row < setup.readings.size(); ++row) {
-      view.nominal_point_w.push_back(chain.nominal_point_w(
-          commanded_position(campaign.machine, setup.readings, row), binding.setups[i].tool_offset));
+      view.nominal_point_w.push_back(
+          chain.nominal_point_w(setup.readings.commanded_position(row), binding.setups[i].tool_offset));
       view.length[static_cast<Eigen::Index>(row)] = binding.setups[i].bound->noise_length(row, 0);
     }
     views.push_back(std::move(view));
@@ -431,14 +431,6 @@ void tabulate_drivers(const std::vector<SetupView>& views, EffectBinding& bindin
                                     (above[index] - below[index]));
     }
   }
-}
-
-AxisPosition commanded_position(const Machine& machine, const Readings& readings, std::size_t row) {
-  AxisPosition position{};
-  for (const Axis& axis : machine.axes) {
-    position[index_of(axis.name)] = readings.position[index_of(axis.name)][row];
-  }
-  return position;
 }
 
 }  // namespace volcal

@@ -124,7 +124,4 @@ std::vector<SetupView> setup_views(const Campaign& campaign, const CampaignBindi
 /// must outlive the binding.
 CampaignBinding bind_campaign(const Campaign& campaign, const ModelSpec& spec, const KinematicChain& chain);
 
-/// Commanded position of a reading.
-AxisPosition commanded_position(const Machine& machine, const Readings& readings, std::size_t row);
-
 }  // namespace volcal

@@ -101,7 +101,7 @@ void MeasurementModel::set_second_order_remainder(const Eigen::VectorXd& paramet
     const SetupBinding& place = binding_.setups[setup];
     remainder_w_[setup].resize(source.readings.size());
     for (std::size_t row = 0; row < source.readings.size(); ++row) {
-      const AxisPosition position = commanded_position(campaign_.machine, source.readings, row);
+      const AxisPosition position = source.readings.commanded_position(row);
       const PoseErrors<double> errors = errors_at_reading(setup, row, position, parameters);
       const ToolTwist twist = chain_.first_order(position, place.tool_offset, errors);
       const Eigen::Vector3d first_order_w =
@@ -158,8 +158,7 @@ double MeasurementModel::sigma(std::size_t setup, std::size_t row, int channel,
   }
   if (source.repeatability > 0.0) {
     ToolState<double> state;
-    state.point_w = chain_.nominal_point_w(commanded_position(campaign_.machine, source.readings, row),
-                                           place.tool_offset);
+    state.point_w = chain_.nominal_point_w(source.readings.commanded_position(row), place.tool_offset);
     double nuisance[kMaxLocalNuisance];
     local_nuisance(setup, row, parameters, nuisance);
     Linearization lin;

@@ -21,7 +21,7 @@ class SetupAtOffset {
     const KinematicChain chain(machine);
     SetupContext context{setup, machine, campaign_file, {}};
     for (std::size_t row = 0; row < setup.readings.size(); ++row)
-      points_w_.push_back(chain.nominal_point_w(commanded_position(machine, setup.readings, row), offset));
+      points_w_.push_back(chain.nominal_point_w(setup.readings.commanded_position(row), offset));
     context.nominal_point_w = points_w_;
     bound_ = instrument.bind(std::move(context));
   }

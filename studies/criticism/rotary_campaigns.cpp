@@ -21,18 +21,6 @@ auto any_of(sim::RandomStream& random, const Values& values) {
   return values[static_cast<std::size_t>(random.uniform() * static_cast<double>(std::size(values)))];
 }
 
-std::vector<AxisName> rotary_axes(const Machine& machine) {
-  std::vector<AxisName> axes;
-  for (const Axis& axis : machine.axes) {
-    if (is_rotary(axis.name)) axes.push_back(axis.name);
-  }
-  return axes;
-}
-
-AxisName other_than_c(const Machine& machine) {
-  return machine.has_axis(AxisName::A) ? AxisName::A : AxisName::B;
-}
-
 int positions(double count, int least) { return std::max(least, static_cast<int>(std::lround(count))); }
 
 /// "EY0C": a displacement across the axis or a tilt.
@@ -74,7 +62,7 @@ void measure_rotary_axes(sim::Study& study, int readings, const sim::NoiseLevel&
   // Three components, three spheres with three tools.
   const double poses = readings * (1.0 - kLinearShare) / 27.0;
   const double tilts = std::sqrt(poses / kGridShare);
-  spheres.poses.grid.points = {{other_than_c(study.machine), positions(tilts, kLeastPositions)},
+  spheres.poses.grid.points = {{tilting_axis(study.machine), positions(tilts, kLeastPositions)},
                                {AxisName::C, positions(tilts * kGridShare, kLeastPositions)}};
   spheres.poses.grid.jitter = kJitter;
   study.measurements.emplace_back().settings = spheres;
@@ -82,7 +70,7 @@ void measure_rotary_axes(sim::Study& study, int readings, const sim::NoiseLevel&
 
 sim::HiddenEffect random_rotary_effect(const std::string& kind, const sim::Study& study,
                                        sim::RandomStream& random) {
-  const std::vector<AxisName> axes = rotary_axes(study.machine);
+  const std::vector<AxisName> axes = study.machine.rotary_axes();
   sim::HiddenEffect effect;
   effect.kind = kind;
   const auto set = [&](const std::string& stem, OptionValue value) {
@@ -96,7 +84,7 @@ sim::HiddenEffect random_rotary_effect(const std::string& kind, const sim::Study
     set("phase", random.uniform(0.0, turn));
   } else if (kind == "cradle-table") {
     set("symbol", ErrorSymbol{any_of(random, kAllComponents), AxisName::C}.name());
-    set("by", std::string(1, letter_of(other_than_c(study.machine))));
+    set("by", std::string(1, letter_of(tilting_axis(study.machine))));
     set("phase", random.uniform(0.0, turn));
   } else if (kind == "squareness-channel") {
     const AxisName axis = any_of(random, axes);
@@ -111,7 +99,7 @@ sim::HiddenEffect random_rotary_effect(const std::string& kind, const sim::Study
 
 ModelSpec without_rotary_errors(const Machine& machine) {
   ModelSpec model;
-  for (const AxisName axis : rotary_axes(machine)) {
+  for (const AxisName axis : machine.rotary_axes()) {
     for (const Component component : kAllComponents) {
       model.functions[{component, axis}].basis = "zero";
       if (direction_of(component) != direction_of(axis) || is_rotation(component))

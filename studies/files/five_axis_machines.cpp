@@ -28,4 +28,8 @@ Machine five_axis_machine(const std::string& structure) {
   return machine;
 }
 
+AxisName tilting_axis(const Machine& machine) {
+  return machine.has_axis(AxisName::A) ? AxisName::A : AxisName::B;
+}
+
 }  // namespace volcal::cli

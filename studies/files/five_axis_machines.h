@@ -14,4 +14,7 @@ const std::vector<std::string>& five_axis_structures();
 /// Two rotary axes, tools of 150 and 300 mm and a mandrel 60 mm to the side; linear travel +-800 mm.
 Machine five_axis_machine(const std::string& structure);
 
+/// A or B, whichever the machine has beside C.
+AxisName tilting_axis(const Machine& machine);
+
 }  // namespace volcal::cli

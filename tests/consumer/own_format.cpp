@@ -21,7 +21,7 @@ std::vector<volcal::TableFile> write_lines(const volcal::FitResult& result,
                                            const volcal::TableFormatOptions& options) {
   const volcal::Compensation ideal = volcal::ideal_compensation(result, options);
   std::vector<volcal::TableFile> files;
-  for (const volcal::AxisName name : volcal::linear_axes_of(result.machine)) {
+  for (const volcal::AxisName name : result.machine.main_linear_axes()) {
     const volcal::Axis& axis = result.machine.axis(name);
     std::ostringstream text;
     text << std::setprecision(12);

@@ -24,6 +24,7 @@
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/program_text.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/text/text_file.h"
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/finding_codes.h"

@@ -43,8 +43,7 @@ std::string axis_table(AxisName axis) {
 std::string datum_table(const Structure& structure) {
   std::vector<char> linear;
   for (const AxisName axis : kLinearAxes) {
-    if (std::ranges::find(structure.joints, axis, &Joint::axis) != structure.joints.end())
-      linear.push_back(letter_of(axis));
+    if (structure.has_axis(axis)) linear.push_back(letter_of(axis));
   }
   if (linear.size() < 2) return "";
   return fmt::format(
@@ -77,7 +76,7 @@ std::string machine_toml(const Structure& structure) {
 std::string position_columns(const Structure& structure) {
   std::string text;
   for (const AxisName axis : kAllAxes) {
-    if (std::ranges::find(structure.joints, axis, &Joint::axis) == structure.joints.end()) continue;
+    if (!structure.has_axis(axis)) continue;
     text += (text.empty() ? "" : ",") + axis_column(axis);
   }
   return text;

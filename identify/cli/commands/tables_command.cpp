@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "volcal/identify/cli/options/alignment_options.h"
 #include "volcal/identify/cli/options/axis_position.h"
 #include "volcal/identify/cli/options/certificate_options.h"
+#include "volcal/identify/cli/options/compensated_readings.h"
 #include "volcal/identify/cli/options/conditions_options.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/picture.h"
@@ -153,12 +153,6 @@ void require_picture_of_tables(const TablesArguments& arguments) {
   require_picture("--picture", arguments.picture);
 }
 
-/// Tables that were active, by the rules of their controller.
-CompensationTables tables_in(const std::string& folder) {
-  const TablesFolder active = read_tables_folder(folder);
-  return active.format->read(active.files);
-}
-
 /// Texts of --record, and of the certificate's campaign what --record does not say.
 TableRecord record_of(const TablesArguments& arguments, const std::optional<CertificateSources>& sources) {
   TableRecord record{arguments.result, named_values("--record", arguments.records)};
@@ -184,7 +178,7 @@ TableFormatOptions table_options(const TableFormat& format, const FitResult& res
   if (!arguments.lines.empty()) options.lines = axis_position("--lines", arguments.lines, result.machine);
   options.settings = named_values("--set", arguments.settings);
   options.conditions = conditions_of(result, arguments.conditions);
-  if (!arguments.superimpose.empty()) options.active = tables_in(arguments.superimpose);
+  if (!arguments.superimpose.empty()) options.active = active_tables(arguments.superimpose);
   return options;
 }
 
@@ -317,8 +311,7 @@ constexpr double kMostGridPoints = 1e7;
 
 /// Throws InputError for a grid of more points than a table of it is read for.
 void require_possible_grid(const Machine& machine, int per_axis) {
-  const auto axes = static_cast<double>(
-      std::ranges::count_if(kLinearAxes, [&](AxisName axis) { return machine.has_axis(axis); }));
+  const auto axes = static_cast<double>(machine.main_linear_axes().size());
   const auto tools = static_cast<double>(machine.tools.size());
   const double points = tools * std::pow(per_axis, axes);
   if (points <= kMostGridPoints) return;

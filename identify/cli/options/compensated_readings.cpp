@@ -7,13 +7,6 @@
 namespace volcal::cli {
 namespace {
 
-AxisPosition position_of(const Readings& readings, const Machine& machine, std::size_t row) {
-  AxisPosition position{};
-  for (const Axis& axis : machine.axes)
-    position[index_of(axis.name)] = readings.position[index_of(axis.name)][row];
-  return position;
-}
-
 ApproachDirection direction_of_row(const Readings& readings, std::size_t row) {
   ApproachDirection direction{};
   for (std::size_t k = 0; k < kAxisCount; ++k) {
@@ -51,7 +44,7 @@ Campaign without_corrections(Campaign campaign, const CompensationTables& tables
     Readings& readings = campaign.setups[setup].readings;
     for (std::size_t row = 0; row < readings.size(); ++row) {
       const Correction correction =
-          tables.correction(position_of(readings, campaign.machine, row), direction_of_row(readings, row));
+          tables.correction(readings.commanded_position(row), direction_of_row(readings, row));
       model.disturbance_rows(setup, row, parameters, rows);
       const Eigen::VectorXd moved = rows * as_disturbance(correction, campaign.machine.structure);
       for (int channel = 0; channel < model.bound(setup).channels(); ++channel)

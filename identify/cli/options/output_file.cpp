@@ -1,6 +1,6 @@
 #include "volcal/identify/cli/options/output_file.h"
 
-#include "volcal/identify/io/program_file.h"
+#include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal::cli {

@@ -61,7 +61,7 @@ double largest_deviation(const Machine& machine, const Compensation& ideal,
                       : std::vector<ApproachDirection>{{}};
   const Eigen::Vector3d zero = difference(home_of(machine), directions.front());
   double largest = 0.0;
-  for (const AxisPosition& position : spread_places(machine, linear_axes_of(machine), kStepCells)) {
+  for (const AxisPosition& position : spread_places(machine, machine.main_linear_axes(), kStepCells)) {
     for (const ApproachDirection& direction : directions)
       largest = std::max(largest, (difference(position, direction) - zero).cwiseAbs().maxCoeff());
   }
@@ -247,7 +247,7 @@ StepChoice choose_step(const TableFormat& format, const FitResult& result, Table
   if (!format.indivisible && !options.type.linear().empty()) options.type = options.type.linear();
   const Compensation ideal = sampled_compensation(format, result, options);
   double longest = 0.0;
-  for (const AxisName axis : linear_axes_of(result.machine))
+  for (const AxisName axis : result.machine.main_linear_axes())
     longest = std::max(longest, 0.5 * result.machine.axis(axis).travel());
   StepChoice best{0.0, std::numeric_limits<double>::infinity(), false};
   std::optional<InputError> refused;

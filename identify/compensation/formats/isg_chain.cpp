@@ -125,8 +125,7 @@ std::vector<std::string> isg_rotary_blocks(const TableFormat& format, const FitR
   std::vector<std::string> blocks = {tool_block(tool_of(result.machine, options))};
   for (const AxisName axis : identified_rotary_axes(result)) {
     const RotaryNodes nodes = rotary_nodes(result, axis, rotary_table_step(options));
-    const auto& joints = result.machine.structure.joints;
-    const bool workpiece = std::ranges::find(joints, axis, &Joint::axis)->workpiece_side;
+    const bool workpiece = result.machine.structure.is_on_workpiece_side(axis);
     blocks.push_back(constants_block(result.machine, errors(home_of(result.machine), {}), axis, type));
     const std::string motions = motions_block(errors, nodes, type, component && workpiece ? -1.0 : 1.0);
     if (!motions.empty()) blocks.push_back(motions);
@@ -157,9 +156,7 @@ IsgChainReader::IsgChainReader(const std::string& chain, int workpiece_axes, boo
 }
 
 bool IsgChainReader::is_on_workpiece_side(AxisName axis) const {
-  const auto& joints = machine_.structure.joints;
-  const auto joint = std::ranges::find(joints, axis, &Joint::axis);
-  return joint != joints.end() && joint->workpiece_side;
+  return machine_.structure.is_on_workpiece_side(axis);
 }
 
 bool IsgChainReader::opens(const TableLines& lines) {

@@ -40,11 +40,6 @@ constexpr std::array<TableSetting, 2> kIsgSettings = {
 
 bool has_rotary_blocks(const TableFormatOptions& options) { return !options.type.rotary().empty(); }
 
-bool is_on_workpiece_side(const Machine& machine, AxisName axis) {
-  const auto& joints = machine.structure.joints;
-  return std::ranges::find(joints, axis, &Joint::axis)->workpiece_side;
-}
-
 /// Whether error motions on the workpiece side are those of the axes themselves.
 bool is_of_component(const Machine& machine, const TableFormatOptions& options) {
   const auto& joints = machine.structure.joints;
@@ -57,8 +52,8 @@ using IsgSigns = std::function<double(AxisName)>;
 
 IsgSigns isg_signs(const Machine& machine, const TableFormatOptions& options) {
   const bool component = is_of_component(machine, options);
-  return [machine, component](AxisName axis) {
-    return component && is_on_workpiece_side(machine, axis) ? -1.0 : 1.0;
+  return [structure = machine.structure, component](AxisName axis) {
+    return component && structure.is_on_workpiece_side(axis) ? -1.0 : 1.0;
   };
 }
 
@@ -155,7 +150,7 @@ std::string isg_blocks(const FitResult& result, const TableFormatOptions& option
 
 /// Every linear axis of a grid must be there: signs are looked up by axis.
 void require_three_axes(const FitResult& result, const TableFormatOptions& options) {
-  if (!has_rotary_blocks(options) || linear_axes_of(result.machine).size() == 3) return;
+  if (!has_rotary_blocks(options) || result.machine.main_linear_axes().size() == 3) return;
   throw InputError({}, "isg-csv: the volumetric compensation needs the three linear axes X, Y and Z",
                    "leave out the types of rotary axes");
 }

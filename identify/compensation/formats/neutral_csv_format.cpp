@@ -149,22 +149,12 @@ void add_rotary_tables(const TableFile& file, CompensationTables& result) {
   for (auto& [axis, table] : tables) result.terms.push_back(axis_term(axis, std::move(table)));
 }
 
-/// Shares of the twists that a type corrects by the linear axes.
-RotaryShares shares_of(CompensationType type) {
-  if (type.has(CompensationPart::RotaryRadialAxial) != type.has(CompensationPart::RotaryAngular))
-    throw InputError({}, "neutral-csv holds R-RAX and R-ANG together alone: a twist has both",
-                     "give both, or R-VOL");
-  return {.own = false,
-          .location = type.has(CompensationPart::RotaryLocation),
-          .motion = type.has(CompensationPart::RotaryAngular)};
-}
-
 void add_rotary_files(const FitResult& result, const TableFormatOptions& options,
                       std::vector<TableFile>& files) {
   if (options.type.has(CompensationPart::RotaryPositioning))
     files.push_back({std::string(kRotaryFile),
                      rotary_file(sample_rotary_positioning(neutral_csv_format(), result, options))});
-  const RotaryShares shares = shares_of(options.type);
+  const RotaryShares shares = twist_shares(neutral_csv_format(), options.type);
   if (!shares.location && !shares.motion) return;
   for (const RotaryGrid& grid : rotary_grids_to_correct(result, options, shares))
     files.push_back({rotary_grid_file_name(grid.body, TableContent::Compensations),

@@ -15,7 +15,7 @@ FunctionalPointLevers::FunctionalPointLevers(const LinearModel& model) : model_(
     Eigen::MatrixXd& length = length_.emplace_back(
         Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(readings.size()), kStationDisturbance));
     for (std::size_t row = 0; row < readings.size(); ++row) {
-      chain.levers(commanded_position(campaign.machine, readings, row), tool, levers.data());
+      chain.levers(readings.commanded_position(row), tool, levers.data());
       for (std::size_t joint = 0; joint < levers.size(); ++joint) {
         for (const Component component : kAllComponents) {
           length(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(6 * joint + index_of(component))) =

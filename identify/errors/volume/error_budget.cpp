@@ -91,7 +91,7 @@ class VolumeOfParts {
                 rotary == RotaryPoses::AtRest ? std::vector<AxisName>() : identified_rotary_axes(result)) {
     fields_.resize(parts_.size());
     VolumeMoments moments(result.parameters.size());
-    std::vector<AxisName> axes = linear_axes_of(result.machine);
+    std::vector<AxisName> axes = result.machine.main_linear_axes();
     for (const AxisName axis : result.machine.parallel_axes()) axes.push_back(axis);
     const auto add_approaches = [&](const AxisPosition& place, bool inside) {
       for (unsigned signs = 0; signs < 1U << axes.size(); ++signs) {

@@ -47,23 +47,15 @@ void add_approaches(const std::vector<AxisPosition>& positions, bool inside,
 
 }  // namespace
 
-std::vector<AxisName> linear_axes_of(const Machine& machine) {
-  std::vector<AxisName> axes;
-  for (const AxisName axis : kLinearAxes) {
-    if (machine.has_axis(axis)) axes.push_back(axis);
-  }
-  return axes;
-}
-
 Eigen::Vector3d movable_directions(const Machine& machine) {
   Eigen::Vector3d movable = Eigen::Vector3d::Zero();
-  for (const AxisName axis : linear_axes_of(machine)) movable[direction_of(axis)] = 1.0;
+  for (const AxisName axis : machine.main_linear_axes()) movable[direction_of(axis)] = 1.0;
   return movable;
 }
 
 AxisPosition middle_of_travel(const Machine& machine) {
   AxisPosition middle{};
-  for (const AxisName axis : linear_axes_of(machine))
+  for (const AxisName axis : machine.main_linear_axes())
     middle[index_of(axis)] = 0.5 * (machine.axis(axis).travel_min + machine.axis(axis).travel_max);
   for (const AxisName axis : machine.parallel_axes()) middle[index_of(axis)] = machine.axis(axis).home;
   return middle;
@@ -71,7 +63,7 @@ AxisPosition middle_of_travel(const Machine& machine) {
 
 AxisPosition home_of(const Machine& machine) {
   AxisPosition home{};
-  for (const AxisName axis : linear_axes_of(machine)) home[index_of(axis)] = machine.axis(axis).home;
+  for (const AxisName axis : machine.main_linear_axes()) home[index_of(axis)] = machine.axis(axis).home;
   for (const AxisName axis : machine.parallel_axes()) home[index_of(axis)] = machine.axis(axis).home;
   return home;
 }
@@ -102,7 +94,7 @@ std::vector<AxisPosition> ends_of_travel(const Machine& machine, const std::vect
 
 std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis) {
   std::vector<VolumePoint> points;
-  const std::vector<AxisName> axes = linear_axes_of(machine);
+  const std::vector<AxisName> axes = machine.main_linear_axes();
   add_approaches(spread_places(machine, axes, cells_per_axis), true, points);
   add_approaches(ends_of_travel(machine, axes), false, points);
   return points;
@@ -110,7 +102,7 @@ std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axi
 
 std::vector<VolumePoint> volume_lattice(const Machine& machine, int cells_per_axis) {
   std::vector<VolumePoint> points;
-  add_approaches(at_shares(machine, linear_axes_of(machine), middles(cells_per_axis)), true, points);
+  add_approaches(at_shares(machine, machine.main_linear_axes(), middles(cells_per_axis)), true, points);
   return points;
 }
 

@@ -14,8 +14,6 @@ namespace volcal {
 AxisPosition middle_of_travel(const Machine& machine);
 /// Every linear axis at its home, rotary axes at 0.
 AxisPosition home_of(const Machine& machine);
-/// The linear axes of the machine, in the order X Y Z.
-std::vector<AxisName> linear_axes_of(const Machine& machine);
 /// 1 where the machine has the linear axis, 0 where it has not.
 Eigen::Vector3d movable_directions(const Machine& machine);
 /// Where the linear axes bring the functional point, m, but for a constant; a parallel axis goes on from its

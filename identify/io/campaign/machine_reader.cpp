@@ -158,8 +158,7 @@ class MachineReader {
 
   void read_datum() {
     const auto table = root_.table("datum");
-    const auto linear =
-        std::ranges::count_if(kLinearAxes, [&](AxisName axis) { return machine_.has_axis(axis); });
+    const std::size_t linear = machine_.main_linear_axes().size();
     use_default_datum();
     if (table) {
       if (linear >= 1 || table->has("primary")) machine_.datum.primary = datum_axis(*table, "primary");
@@ -170,7 +169,7 @@ class MachineReader {
       }
     }
     const std::array<AxisName, 2> datum = {machine_.datum.primary, machine_.datum.secondary};
-    for (std::size_t i = 0; i < datum.size() && static_cast<std::ptrdiff_t>(i) < linear; ++i) {
+    for (std::size_t i = 0; i < datum.size() && i < linear; ++i) {
       const AxisName axis = datum[i];
       if (machine_.has_axis(axis)) continue;
       root_.fail("datum", std::string("the datum axis ") + letter_of(axis) + " is no axis of the structure",

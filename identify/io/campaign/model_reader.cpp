@@ -381,11 +381,6 @@ class ModelReader {
   ModelSpec spec_;
 };
 
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code error;
-  return std::filesystem::equivalent(a, b, error) && !error;
-}
-
 void check_machine(const TomlDocument& document, const std::string& file, const Machine& machine) {
   const TomlTable root = document.root();
   const auto named = root.text("machine");

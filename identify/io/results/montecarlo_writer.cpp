@@ -84,7 +84,7 @@ std::string montecarlo_json(const MonteCarloResult& result) {
                          {"digits", result.digits},
                          {"adaptive", result.adaptive},
                          {"settled", result.settled},
-                         {"coverage", kCoverage},
+                         {"coverage", kCoverageProbability},
                          {"conditions", stated_conditions_json(result)},
                          {"refitted", result.refitted},
                          {"not_converged", result.not_converged},

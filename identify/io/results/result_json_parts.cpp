@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "volcal/identify/text/json_number.h"
 #include "volcal/identify/text/text_encoding.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/functions/registry.h"
@@ -225,20 +225,9 @@ void require_no_control(const Json& json) {
   }
 }
 
-Json number(double value) {
-  if (std::isfinite(value)) return value;
-  if (std::isnan(value)) return "nan";
-  return value > 0.0 ? "inf" : "-inf";
-}
+Json number(double value) { return number_json(value); }
 
-double number(const Json& json) {
-  if (json.is_number()) return json.get<double>();
-  const auto name = json.get<std::string>();
-  if (name == "nan") return std::numeric_limits<double>::quiet_NaN();
-  if (name == "inf") return std::numeric_limits<double>::infinity();
-  if (name == "-inf") return -std::numeric_limits<double>::infinity();
-  throw std::invalid_argument("\"" + printable(name) + "\" is no number");
-}
+double number(const Json& json) { return number_from(json); }
 
 Json vector(const Eigen::Ref<const Eigen::VectorXd>& values) {
   Json json = Json::array();

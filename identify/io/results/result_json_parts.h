@@ -13,10 +13,10 @@ namespace volcal::json_parts {
 
 using Json = nlohmann::ordered_json;
 
-/// A number, or its name when it is not finite.
 /// Throws std::invalid_argument where a key or a text holds a control character other than a line end: names
 /// are shown on terminals and written into tables.
 void require_no_control(const Json& json);
+/// A number, or its name when it is not finite.
 Json number(double value);
 double number(const Json& json);
 Json vector(const Eigen::Ref<const Eigen::VectorXd>& values);

@@ -34,22 +34,22 @@ Json written_cell(const ComparisonCell& cell) {
   return json;
 }
 
-Json unidirectional_json(const UnidirectionalFigures& figures) {
-  return {{"A_um", micro(figures.accuracy)},
-          {"E_um", micro(figures.systematic)},
-          {"R_um", micro(figures.repeatability)}};
+Json unidirectional_json(const UnidirectionalFigures& figures, const std::string& unit) {
+  return {{"A_" + unit, micro(figures.accuracy)},
+          {"E_" + unit, micro(figures.systematic)},
+          {"R_" + unit, micro(figures.repeatability)}};
 }
 
-Json positioning_json(const PositioningFigures& figures) {
+Json positioning_json(const PositioningFigures& figures, const std::string& unit) {
   return {{"targets", figures.targets.size()},
-          {"A_um", micro(figures.accuracy)},
-          {"E_um", micro(figures.systematic)},
-          {"M_um", micro(figures.mean_bidirectional)},
-          {"R_um", micro(figures.repeatability)},
-          {"B_um", micro(figures.reversal)},
-          {"mean_B_um", micro(figures.mean_reversal)},
-          {"positive", unidirectional_json(figures.positive)},
-          {"negative", unidirectional_json(figures.negative)}};
+          {"A_" + unit, micro(figures.accuracy)},
+          {"E_" + unit, micro(figures.systematic)},
+          {"M_" + unit, micro(figures.mean_bidirectional)},
+          {"R_" + unit, micro(figures.repeatability)},
+          {"B_" + unit, micro(figures.reversal)},
+          {"mean_B_" + unit, micro(figures.mean_reversal)},
+          {"positive", unidirectional_json(figures.positive, unit)},
+          {"negative", unidirectional_json(figures.negative, unit)}};
 }
 
 Json path_json(const std::optional<CircularPath>& path) {
@@ -90,24 +90,6 @@ Json summary_json(const DiagonalSummary& summary) {
           {"B_d_um", micro(summary.reversal)}};
 }
 
-Json unidirectional_angle_json(const UnidirectionalFigures& figures) {
-  return {{"A_urad", micro(figures.accuracy)},
-          {"E_urad", micro(figures.systematic)},
-          {"R_urad", micro(figures.repeatability)}};
-}
-
-Json angular_json(const PositioningFigures& figures) {
-  return {{"targets", figures.targets.size()},
-          {"A_urad", micro(figures.accuracy)},
-          {"E_urad", micro(figures.systematic)},
-          {"M_urad", micro(figures.mean_bidirectional)},
-          {"R_urad", micro(figures.repeatability)},
-          {"B_urad", micro(figures.reversal)},
-          {"mean_B_urad", micro(figures.mean_reversal)},
-          {"positive", unidirectional_angle_json(figures.positive)},
-          {"negative", unidirectional_angle_json(figures.negative)}};
-}
-
 Json error_motion_json(const ErrorMotionFigures& figures, const std::string& unit) {
   return {{"angles", figures.angles},
           {"total_" + unit, micro(figures.total)},
@@ -136,8 +118,8 @@ void add_rotary_figures(const StandardFigures& figures, Json& json) {
     json["iso230_2_rotary"].push_back({{"setup", test.setup},
                                        {"axis", std::string{letter_of(test.axis)}},
                                        {"place", test.place},
-                                       {"readings", angular_json(test.figures.readings)},
-                                       {"model", angular_json(test.figures.model)}});
+                                       {"readings", positioning_json(test.figures.readings, "urad")},
+                                       {"model", positioning_json(test.figures.model, "urad")}});
     add_findings("notes", test.notes, json["iso230_2_rotary"].back());
   }
   for (const ErrorMotionTest& test : figures.error_motions) {
@@ -170,15 +152,15 @@ Json figures_json(const StandardFigures& figures) {
     json["iso230_2"].push_back({{"setup", test.setup},
                                 {"axis", std::string{letter_of(test.axis)}},
                                 {"place", test.place},
-                                {"readings", positioning_json(test.figures.readings)},
-                                {"model", positioning_json(test.figures.model)}});
+                                {"readings", positioning_json(test.figures.readings, "um")},
+                                {"model", positioning_json(test.figures.model, "um")}});
     add_findings("notes", test.notes, json["iso230_2"].back());
   }
   for (const DiagonalTest& test : figures.diagonals) {
     json["iso230_6"].push_back({{"setup", test.setup},
                                 {"diagonal", test.figures.readings.name},
-                                {"readings", positioning_json(test.figures.readings.positioning)},
-                                {"model", positioning_json(test.figures.model.positioning)}});
+                                {"readings", positioning_json(test.figures.readings.positioning, "um")},
+                                {"model", positioning_json(test.figures.model.positioning, "um")}});
     add_findings("notes", test.notes, json["iso230_6"].back());
   }
   for (const DiagonalGroup& group : figures.diagonal_groups) {

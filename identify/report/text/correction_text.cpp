@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -24,19 +25,16 @@ Correction correction_at(const CompensationTables& tables, const AxisPosition& p
   return tables.correction(position, direction);
 }
 
-std::vector<AxisName> rotary_axes_of(const Machine& machine) {
-  std::vector<AxisName> axes;
-  for (const AxisName axis : kAllAxes) {
-    if (is_rotary(axis) && machine.has_axis(axis)) axes.push_back(axis);
-  }
+std::vector<AxisName> sorted_rotary_axes(const Machine& machine) {
+  std::vector<AxisName> axes = machine.rotary_axes();
+  std::ranges::sort(axes);
   return axes;
 }
 
 /// X Y Z U V W A B C.
 std::vector<AxisName> axes_in_order(const Machine& machine) {
-  std::vector<AxisName> axes = linear_axes_of(machine);
-  for (const AxisName axis : machine.parallel_axes()) axes.push_back(axis);
-  for (const AxisName axis : rotary_axes_of(machine)) axes.push_back(axis);
+  std::vector<AxisName> axes = machine.linear_axes();
+  for (const AxisName axis : sorted_rotary_axes(machine)) axes.push_back(axis);
   return axes;
 }
 
@@ -59,7 +57,7 @@ std::string corrections_text(const Machine& machine, const CompensationTables& t
     columns.push_back({fmt::format("{} [{}]", letter_of(axis), position_unit(axis).suffix)});
   columns.push_back({"approached", Align::Left});
   for (const char* name : {"dX [um]", "dY [um]", "dZ [um]"}) columns.push_back({name});
-  for (const AxisName axis : rotary_axes_of(machine))
+  for (const AxisName axis : sorted_rotary_axes(machine))
     columns.push_back({fmt::format("d{} [urad]", letter_of(axis))});
   TextTable table(columns, "Added to the command by the tables read back");
   for (const AxisPosition& point : points) {
@@ -70,7 +68,7 @@ std::string corrections_text(const Machine& machine, const CompensationTables& t
       cells.push_back(fmt::format("towards {}", signs[0]));
       const Correction correction = correction_at(tables, point, signs);
       for (const double component : correction.linear) cells.push_back(fixed_number(component / kMicro, 3));
-      for (const AxisName axis : rotary_axes_of(machine))
+      for (const AxisName axis : sorted_rotary_axes(machine))
         cells.push_back(fixed_number(correction.rotary[direction_of(axis)] / kMicro, 3));
       table.add_row(std::move(cells));
     }
@@ -89,7 +87,7 @@ nlohmann::ordered_json corrections_json(const Machine& machine, const Compensati
       const Correction correction = correction_at(tables, point, signs);
       const Eigen::Vector3d um = correction.linear / kMicro;
       entry["correction_um"][signs] = {um.x(), um.y(), um.z()};
-      for (const AxisName axis : rotary_axes_of(machine))
+      for (const AxisName axis : sorted_rotary_axes(machine))
         entry["rotary_correction_urad"][signs][std::string(1, letter_of(axis))] =
             correction.rotary[direction_of(axis)] / kMicro;
     }

@@ -23,13 +23,6 @@ constexpr MeanKind kMeanKinds[] = {{&ComparisonCell::lengths, "um"}, {&Compariso
 
 bool tells_signs(const std::string& by) { return by == "setup" || by.starts_with("direction of "); }
 
-const ComparisonCell* cell_of(const Comparison& model, const std::string& by, const std::string& label) {
-  const Breakdown* breakdown = model.find(by);
-  if (breakdown == nullptr) return nullptr;
-  const auto found = std::ranges::find(breakdown->cells, label, &ComparisonCell::label);
-  return found == breakdown->cells.end() ? nullptr : &*found;
-}
-
 std::vector<const ComparisonCell*> told_cells(const Breakdown& breakdown, const MeanKind& kind,
                                               std::size_t most) {
   std::vector<const ComparisonCell*> cells;
@@ -54,7 +47,7 @@ void add_means_of(const Breakdown& breakdown, const MeanKind& kind, Models model
                                     count_number(static_cast<long long>((cell->*kind.size).count))};
     by.clear();
     for (const Comparison* model : models) {
-      const ComparisonCell* own = cell_of(*model, breakdown.by, cell->label);
+      const ComparisonCell* own = model->find_cell(breakdown.by, cell->label);
       const bool any = own != nullptr && (own->*kind.size).count > 0;
       row.push_back(any ? fixed_number((own->*kind.size).mean / kMicro, 2) : "-");
       row.push_back(any ? fixed_number((own->*kind.size).rms / kMicro, 2) : "-");

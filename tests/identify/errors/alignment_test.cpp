@@ -381,7 +381,7 @@ TEST(Alignment, ReadingsThatCountFromTheNominalPointAreRestated) {
       if (setup.tool != kMandrel) continue;
       Eigen::MatrixXd left(3, static_cast<Eigen::Index>(setup.readings.size()));
       for (std::size_t row = 0; row < setup.readings.size(); ++row) {
-        const AxisPosition position = commanded_position(machine, setup.readings, row);
+        const AxisPosition position = setup.readings.commanded_position(row);
         for (int k = 0; k < 3; ++k)
           left(k, static_cast<Eigen::Index>(row)) = setup.readings.value[static_cast<std::size_t>(k)][row];
         left.col(static_cast<Eigen::Index>(row)) -=
@@ -393,7 +393,7 @@ TEST(Alignment, ReadingsThatCountFromTheNominalPointAreRestated) {
   };
   for (auto& setup : campaign.setups) {
     for (std::size_t row = 0; row < setup.readings.size(); ++row) {
-      const AxisPosition position = commanded_position(machine, setup.readings, row);
+      const AxisPosition position = setup.readings.commanded_position(row);
       const auto error = volumetric_error(result, position, machine.tools[setup.tool]).value;
       for (std::size_t k = 0; k < 3; ++k) setup.readings.value[k][row] = error[static_cast<Eigen::Index>(k)];
     }

@@ -24,7 +24,7 @@ std::vector<std::string> names_of(const Symbols& symbols) {
 
 TEST(Unknowns, ThreeLinearAxesHaveTwentyOne) {
   const Machine machine = testing_support::machine_of("w Y' b Z X t");
-  EXPECT_THAT(linear_axes(machine), ElementsAre(AxisName::X, AxisName::Y, AxisName::Z));
+  EXPECT_THAT(machine.linear_axes(), ElementsAre(AxisName::X, AxisName::Y, AxisName::Z));
   const auto motions = names_of(linear_axis_motions(machine));
   ASSERT_EQ(motions.size(), 18U);
   EXPECT_EQ(motions.front(), "EXX");

@@ -103,9 +103,8 @@ TEST_P(EffectAgainstJet, DerivativesToAmplitudesEqualAutomaticOnes) {
         const Readings& readings = campaign_.setups[setup].readings;
         const Disturbed disturbed(*bound.effect, bound.driver[setup].row(kRow),
                                   model.binding().setups[setup].tool_offset);
-        const ToolState<InstrumentJet> state =
-            state_of(disturbed, model.chain(), commanded_position(campaign_.machine, readings, kRow),
-                     model.binding().floor_pivot_w);
+        const ToolState<InstrumentJet> state = state_of(
+            disturbed, model.chain(), readings.commanded_position(kRow), model.binding().floor_pivot_w);
         RowJacobian row;
         model.linearize(setup, kRow, at, row);
         InstrumentJet nuisance[kMaxLocalNuisance], expected[kMaxChannels];

@@ -35,7 +35,7 @@ TEST_P(MeasurementModelOnRandomChains, LengthIsFromStationToTheDisplacedPoint) {
   const ParameterBlock& station = *model_.layout().find_block("station S0");
   const ParameterBlock& dead_path = *model_.layout().find_block("S0: dead path");
   for (std::size_t row = 0; row < kReadings; ++row) {
-    const AxisPosition position = commanded_position(campaign_.machine, setup.readings, row);
+    const AxisPosition position = setup.readings.commanded_position(row);
     const ToolTwist twist =
         model_.chain().first_order(position, tool, model_.errors_at(position, parameters_));
     const Eigen::Vector3d point_w = model_.chain().nominal_point_w(position, tool) + twist.displacement_w;

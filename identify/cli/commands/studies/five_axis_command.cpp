@@ -12,6 +12,7 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/statistics/normal.h"
 #include "volcal/model/description/units.h"
 #include "volcal/studies/files/five_axis_machines.h"
 #include "volcal/studies/five_axis.h"
@@ -34,12 +35,11 @@ struct MeanInterval {
 };
 
 MeanInterval interval_of(const FiveAxisCampaigns& campaigns, FiveAxisFigure figure) {
-  constexpr double kCoverage = 1.96;
   const auto n = static_cast<double>(campaigns.size());
   double mean = 0.0, squares = 0.0;
   for (const FiveAxisCampaign& each : campaigns) mean += each.*figure / n;
   for (const FiveAxisCampaign& each : campaigns) squares += (each.*figure - mean) * (each.*figure - mean);
-  return {mean, n > 1.0 ? kCoverage * std::sqrt(squares / (n - 1.0) / n) : std::nan("")};
+  return {mean, n > 1.0 ? kCoverageFactor * std::sqrt(squares / (n - 1.0) / n) : std::nan("")};
 }
 
 FiveAxisCampaigns of_structure(const FiveAxisCampaigns& campaigns, const std::string& structure) {

@@ -61,7 +61,7 @@ bool linear_axes_are_together(const Structure& structure) {
 }
 
 void require_kins_structure(const Machine& machine) {
-  if (linear_axes_are_together(machine.structure) && linear_axes_of(machine).size() == 3) return;
+  if (linear_axes_are_together(machine.structure) && machine.main_linear_axes().size() == 3) return;
   throw InputError({},
                    "linuxcnc-grid: volcalkins needs X, Y and Z without a rotary axis between them, " +
                        machine.structure.code + " has not",
@@ -117,20 +117,10 @@ std::string kins_twists(const RotaryGrid& grid, double unit) {
   return text;
 }
 
-/// Of the twists, what the type corrects by linear axes.
-RotaryShares kins_shares(CompensationType type) {
-  if (type.has(CompensationPart::RotaryRadialAxial) != type.has(CompensationPart::RotaryAngular))
-    throw InputError({}, "linuxcnc-grid holds R-RAX and R-ANG together alone: a twist has both",
-                     "give both, or R-VOL");
-  return {.own = false,
-          .location = type.has(CompensationPart::RotaryLocation),
-          .motion = type.has(CompensationPart::RotaryAngular)};
-}
-
 std::string kins_rotary(const FitResult& result, const TableFormatOptions& options) {
   const std::string units = linear_units_of(options);
   const double unit = linear_unit(units);
-  const RotaryShares shares = kins_shares(options.type);
+  const RotaryShares shares = twist_shares(linuxcnc_grid_format(), options.type);
   require_kins_structure(result.machine);
   std::string text = fmt::format(
       "# rotary axes: what is added to their commands, deg, and what the linear axes follow, {} and rad\n"
@@ -256,7 +246,7 @@ class KinsRotaryReader {
     machine_.structure =
         Structure::parse("w " + std::string(line.substr(5)) + " t", lines_.place().file, lines_.place().line);
     for (const Joint& joint : machine_.structure.joints) machine_.axes.emplace_back().name = joint.axis;
-    if (!linear_axes_are_together(machine_.structure) || linear_axes_of(machine_).size() != 3)
+    if (!linear_axes_are_together(machine_.structure) || machine_.main_linear_axes().size() != 3)
       lines_.fail("a rotary axis stands between linear axes, or one of X, Y, Z is missing",
                   "volcalkins needs X, Y and Z without a rotary axis between them");
   }
@@ -307,8 +297,7 @@ class KinsRotaryReader {
     std::vector<std::size_t> sizes;
     for (std::size_t word = 2; word < words_.size(); word += 3) {
       grid.axes.push_back({rotary_axis(word), {}, turn(word + 2)});
-      const auto& joints = machine_.structure.joints;
-      if (std::ranges::find(joints, grid.axes.back().axis, &Joint::axis)->workpiece_side != table)
+      if (machine_.structure.is_on_workpiece_side(grid.axes.back().axis) != table)
         lines_.fail("the axis turns the other body", "write the tables again");
       sizes.push_back(static_cast<std::size_t>(count(word + 1)));
       rows *= sizes.back();

@@ -86,7 +86,8 @@ Setup circle(const CandidateContext& context, const Plane& plane, double radius,
 std::vector<ExtraMeasurement> calibrated_lengths(const CandidateContext& context) {
   const Machine& machine = context.campaign.machine;
   double shortest = std::numeric_limits<double>::infinity();
-  for (const AxisName axis : linear_axes(machine)) shortest = std::min(shortest, machine.axis(axis).travel());
+  for (const AxisName axis : machine.linear_axes())
+    shortest = std::min(shortest, machine.axis(axis).travel());
   const double radius = std::min(kUsualRadius, kTravelShare * shortest);
   std::vector<ExtraMeasurement> all;
   for (const Plane& plane : kPlanes) {

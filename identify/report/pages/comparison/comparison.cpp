@@ -35,13 +35,6 @@ Json cell_json(const ComparisonCell& cell) {
                                       : ""}};
 }
 
-const ComparisonCell* cell_at(const Comparison& model, const std::string& by, const std::string& label) {
-  const Breakdown* breakdown = model.find(by);
-  if (breakdown == nullptr) return nullptr;
-  const auto found = std::ranges::find(breakdown->cells, label, &ComparisonCell::label);
-  return found == breakdown->cells.end() ? nullptr : &*found;
-}
-
 /// Worst of the last model first, of what is worse than chance.
 Json places_json(std::span<const ComparedModel> models) {
   std::vector<std::pair<std::string, const ComparisonCell*>> places;
@@ -58,7 +51,7 @@ Json places_json(std::span<const ComparedModel> models) {
   for (const auto& [by, cell] : places) {
     Json of_models = Json::array();
     for (const ComparedModel& model : models) {
-      const ComparisonCell* own = cell_at(model.comparison, by, cell->label);
+      const ComparisonCell* own = model.comparison.find_cell(by, cell->label);
       of_models.push_back(cell_json(own == nullptr ? ComparisonCell{} : *own));
     }
     rows.push_back({{"by", by},

@@ -25,6 +25,7 @@
 #include "chains.h"
 #include "measure.h"
 #include "reference_problem.h"
+#include "tests/support/error_oracles.h"
 #include "volcal/identify/compensation/csv_tables.h"
 #include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/errors/error_grid.h"
@@ -138,7 +139,7 @@ Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> error_row
                                                                               machine.result.layout.size);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     rows.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
-        volumetric_error_rows(machine.result, positions[i], machine.tool()).topRows<3>();
+        ErrorField(machine.result, machine.tool()).rows(positions[i]).topRows<3>();
   }
   return rows;
 }
@@ -231,7 +232,8 @@ Json points_part(const EvaluationArguments& arguments) {
   const auto many = LinearAxisErrors::make(machine.result, machine.tool().offset,
                                            MachineEffects(machine.result, machine.tool(), conditions));
   const DisplacementField one = displacement_field(machine.result, machine.tool(), conditions);
-  const DisplacementField plain = plain_displacement_field(machine.result, machine.tool(), conditions);
+  const DisplacementField plain =
+      testing::plain_displacement_field(machine.result, machine.tool(), conditions);
   const ApproachDirection mean{};
   std::vector<Eigen::Vector3d> errors(kPoints), same(kPoints);
   const auto one_by_one = [&](const DisplacementField& field) {

@@ -28,9 +28,6 @@ enum class CompensationPart {
 inline constexpr std::array<CompensationPart, 4> kLinearCompensationParts = {
     CompensationPart::Positioning, CompensationPart::Straightness, CompensationPart::Squareness,
     CompensationPart::Angular};
-inline constexpr std::array<CompensationPart, 4> kRotaryCompensationParts = {
-    CompensationPart::RotaryPositioning, CompensationPart::RotaryRadialAxial,
-    CompensationPart::RotaryLocation, CompensationPart::RotaryAngular};
 
 /// A type or a combination of types. L-VOL contains the other four linear ones, and turns the machine frame
 /// as the datum says, which no accuracy of the machine depends on. R-VOL is R-POS, R-RAX, R-POR and R-ANG

@@ -205,35 +205,6 @@ TableFile spatial_grid_file(std::string name, const FitResult& result, int per_a
           }};
 }
 
-std::string spatial_grid_csv(const std::vector<VolumetricError>& grid, const Machine& machine,
-                             TableContent content) {
-  GridRows rows(machine, content);
-  for (const VolumetricError& point : grid) rows.append(point);
-  return grid_header(machine, content) + "\n" + std::string(rows.text());
-}
-
-std::vector<VolumetricError> read_spatial_grid(const TableFile& file, const Machine& machine,
-                                               TableContent content) {
-  const std::vector<AxisName> axes = axes_of_grid(machine);
-  std::vector<VolumetricError> grid;
-  for (const CsvRow& row : csv_rows(file, grid_header(machine, content))) {
-    VolumetricError point;
-    std::size_t column = 0;
-    for (const AxisName axis : axes)
-      point.position[index_of(axis)] =
-          csv_number(row, column++, "the position") * position_unit(axis).si_per_unit;
-    point.tool = row.cells[column++];
-    if (!machine.tool_index(point.tool))
-      fail_cell(row, "tool", point.tool, "write a tool that metadata.csv lists");
-    for (double& value : point.value)
-      value = signed_value(csv_number(row, column++, "the value") * kMicro, content);
-    for (double& u : point.u) u = uncertainty(row, column++, "u");
-    point.extrapolated = flag(row, column);
-    grid.push_back(point);
-  }
-  return grid;
-}
-
 std::vector<TableFile> result_tables(const FitResult& result, const TableFormatOptions& options) {
   return {{"error_tables.csv",
            function_table_csv(error_table(result, function_options(result, options)), TableContent::Errors)},

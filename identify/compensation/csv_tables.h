@@ -30,11 +30,6 @@ std::vector<ErrorTableRow> read_function_table(const TableFile& file, TableConte
 /// written.
 TableFile spatial_grid_file(std::string name, const FitResult& result, int per_axis,
                             const Conditions& conditions, TableContent content);
-/// The same of given points.
-std::string spatial_grid_csv(const std::vector<VolumetricError>& grid, const Machine& machine,
-                             TableContent content);
-std::vector<VolumetricError> read_spatial_grid(const TableFile& file, const Machine& machine,
-                                               TableContent content);
 
 /// error_tables.csv and volumetric_grid.csv, which every result folder holds.
 std::vector<TableFile> result_tables(const FitResult& result, const TableFormatOptions& options);

@@ -5,8 +5,6 @@
 namespace volcal {
 namespace {
 
-constexpr bool kOfClause = true;
-
 constexpr std::array kItems = {
     RecordItem{"serial_number", "Serial number"},
     RecordItem{"manufacturer", "Manufacturer"},
@@ -16,12 +14,12 @@ constexpr std::array kItems = {
     RecordItem{"operator", "Operator"},
     RecordItem{"measured_on", "Measured on"},
     RecordItem{"remarks", "Remarks"},
-    RecordItem{"machine_state", "Machine before the measurement, warm-up", kOfClause},
-    RecordItem{"load", "Load", kOfClause},
-    RecordItem{"feed", "Feed speeds and accelerations", kOfClause},
-    RecordItem{"ambient_temperature", "Ambient temperature", kOfClause},
-    RecordItem{"component_temperatures", "Temperatures of machine components", kOfClause},
-    RecordItem{"active_compensations", "Compensations active while it was measured", kOfClause},
+    RecordItem{"machine_state", "Machine before the measurement, warm-up"},
+    RecordItem{"load", "Load"},
+    RecordItem{"feed", "Feed speeds and accelerations"},
+    RecordItem{"ambient_temperature", "Ambient temperature"},
+    RecordItem{"component_temperatures", "Temperatures of machine components"},
+    RecordItem{"active_compensations", "Compensations active while it was measured"},
 };
 
 }  // namespace

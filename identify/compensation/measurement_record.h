@@ -17,9 +17,8 @@ inline constexpr std::string_view kCertificatePdf = "certificate.pdf";
 struct RecordItem {
   std::string_view key;    ///< in [record]: "serial_number"
   std::string_view title;  ///< as a certificate prints it: "Serial number"
-  bool of_clause = false;  ///< asked for by clause 9.1; stands in metadata.csv too (recordable_conditions())
 };
-/// In the order of a certificate.
+/// In the order of a certificate; among them what clause 9.1 asks for (recordable_conditions()).
 std::span<const RecordItem> record_items();
 
 struct MeasurementRecord {

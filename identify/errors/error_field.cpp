@@ -471,26 +471,4 @@ DisplacementField displacement_field(const FitResult& result, const Tool& tool,
   };
 }
 
-DisplacementField plain_displacement_field(const FitResult& result, const Tool& tool,
-                                           const Conditions& conditions) {
-  FitResult linear = result;
-  for (const FunctionGroup& group : linear.layout.groups) {
-    if (is_rotary(group.axis)) linear.parameters.segment(group.offset, group.size()).setZero();
-  }
-  for (const ParameterBlock& block : linear.layout.blocks) {
-    if (block.location && is_rotary(block.location->axis)) linear.parameters[block.offset] = 0.0;
-    if (block.name == tool_parameter(tool.name))
-      linear.parameters.segment(block.offset, block.size()).setZero();
-  }
-  const MachineEffects effects(result, tool, conditions);
-  for (const EffectColumn& column : effects.columns()) {
-    if (column.target.kind == TargetKind::Motion && is_rotary(column.target.symbol.axis))
-      linear.parameters[column.amplitude_parameter] = 0.0;
-  }
-  return [field = ErrorField(linear, tool, conditions)](const AxisPosition& position,
-                                                        const ApproachDirection& direction) -> Vector3d {
-    return field.at(without_rotary_axes(position), direction).head<3>();
-  };
-}
-
 }  // namespace volcal

@@ -191,8 +191,5 @@ class LinearDisplacements {
 
 /// LinearDisplacements as a function.
 DisplacementField displacement_field(const FitResult& result, const Tool& tool, const Conditions& conditions);
-/// The same along the chain, joint by joint, at every call.
-DisplacementField plain_displacement_field(const FitResult& result, const Tool& tool,
-                                           const Conditions& conditions);
 
 }  // namespace volcal

@@ -359,10 +359,6 @@ VolumetricError volumetric_error(const FitResult& result, const ErrorField& fiel
   return error;
 }
 
-PoseErrorRows volumetric_error_rows(const FitResult& result, const AxisPosition& position, const Tool& tool) {
-  return ErrorField(result, tool).rows(position);
-}
-
 VolumetricError volumetric_error(const FitResult& result, const AxisPosition& position, const Tool& tool) {
   return volumetric_error(result, ErrorField(result, tool), position, tool);
 }
@@ -407,15 +403,6 @@ void for_each_plane_of_grid(const FitResult& result, int per_axis, const Conditi
                             const std::function<void(std::span<const VolumetricError>)>& use) {
   const AxisGrid axes = axis_grid(result.machine, per_axis);
   for (const Tool& tool : result.machine.tools) for_each_plane_of_tool(result, tool, axes, conditions, use);
-}
-
-std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis,
-                                             const Conditions& conditions) {
-  std::vector<VolumetricError> grid;
-  for_each_plane_of_grid(result, per_axis, conditions, [&grid](std::span<const VolumetricError> nodes) {
-    grid.insert(grid.end(), nodes.begin(), nodes.end());
-  });
-  return grid;
 }
 
 std::vector<Finding> unmeasured_travel(const FitResult& result) {

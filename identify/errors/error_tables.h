@@ -65,14 +65,11 @@ VolumetricError volumetric_error(const FitResult& result, const ErrorField& fiel
                                  const AxisPosition& position, const Tool& tool,
                                  const ApproachDirection& direction = {});
 /// At the default conditions, mean of both directions.
-PoseErrorRows volumetric_error_rows(const FitResult& result, const AxisPosition& position, const Tool& tool);
 VolumetricError volumetric_error(const FitResult& result, const AxisPosition& position, const Tool& tool);
 /// `per_axis` positions on each linear axis, ends included, the last axis fastest; rotary axes at 0.
 std::vector<AxisPosition> grid_positions(const Machine& machine, int per_axis);
-/// Grid over the travel, `per_axis` positions each, for every tool.
-std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis,
-                                             const Conditions& conditions);
-/// The same plane by plane of the first axis of axis_grid(), for grids too large for memory.
+/// Grid over the travel, `per_axis` positions each, for every tool, plane by plane of the first axis of
+/// axis_grid().
 void for_each_plane_of_grid(const FitResult& result, int per_axis, const Conditions& conditions,
                             const std::function<void(std::span<const VolumetricError>)>& use);
 

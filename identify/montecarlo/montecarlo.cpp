@@ -347,14 +347,12 @@ class MonteCarloStudy::Work {
     start = std::chrono::steady_clock::now();
     const Eigen::MatrixXd chord = solvers_.by_chord(draws, chord_tally);
     check_.chord.seconds = seconds_since(start) / count;
-    start = std::chrono::steady_clock::now();
     Eigen::MatrixXd refits(repeated_.parameters(), count);
     std::vector<SolverTally> tallies(static_cast<std::size_t>(count));
     run_parallel(static_cast<std::size_t>(count), threads_, [&](std::size_t k) {
       refits.col(static_cast<Eigen::Index>(k)) = solvers_.by_refit({draws[k]}, tallies[k]);
     });
     for (const SolverTally& tally : tallies) refit_tally.add(tally);
-    check_.refit_seconds = seconds_since(start) / count * std::min(threads_, count);
     check_.not_converged = static_cast<int>(refit_tally.not_converged);
     const Eigen::MatrixXd t = projection_.of(refits);
     compare(projection_.of(linear) - t, check_.linear);

@@ -66,8 +66,7 @@ struct PathCheck {
 struct RefitCheck {
   PathCheck linear;
   PathCheck chord;
-  double refit_seconds = 0.0;  ///< per draw
-  int not_converged = 0;       ///< refits
+  int not_converged = 0;  ///< refits
 };
 
 /// Clause 8: linear propagation is validated when the ends of its interval are within the numerical tolerance

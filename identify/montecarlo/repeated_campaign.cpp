@@ -184,10 +184,6 @@ void RepeatedCampaign::set_linear_propagation() {
   root_ = scaled_covariance_root(0.5 * (covariance + covariance.transpose()));
 }
 
-Eigen::MatrixXd RepeatedCampaign::linear_covariance() const {
-  return root_ * root_.transpose() + rectangular_response_ * rectangular_response_.transpose();
-}
-
 namespace {
 
 /// Uniform on (0, 1] to a rectangular distribution of standard deviation 1.

@@ -102,8 +102,6 @@ class RepeatedCampaign {
   const Eigen::VectorXd& linear_bias() const { return bias_; }
   const Eigen::MatrixXd& response() const { return rectangular_response_; }
   const std::vector<UncertaintySource>& uncertainty_sources() const { return uncertainty_sources_; }
-  /// Covariance of (2), all sources.
-  Eigen::MatrixXd linear_covariance() const;
 
   /// For deviations by (2) that are drawn without their readings, J^T Sigma^-1 e being exactly
   /// N(0, J^T Sigma^-1 J): standard normal numbers, as many as there are rows, and amplitudes of response(),

@@ -121,7 +121,6 @@ NoiseEstimate find_noise(RestrictedLikelihood& likelihood, const NoiseOptions& o
     white.push_back(estimate.instruments[g].parameters.white);
     shares.set(g, estimate.instruments[g].parameters);
   }
-  estimate.white_log_likelihood = likelihood.log_likelihood(shares.total());
   if (previous != nullptr && likelihood.groups() > 1) {
     for (std::size_t g = 0; g < likelihood.groups(); ++g) shares.set(g, previous->instruments[g].parameters);
   }
@@ -184,7 +183,7 @@ NoiseEstimate readjust_noise(const NoiseProblem& problem, const NoiseOptions& op
                              const NoiseEstimate& before) {
   RestrictedLikelihood likelihood(problem, options.threads);
   NoiseEstimate found = find_noise(likelihood, options, &before, &before);
-  found.log_likelihood = found.white_log_likelihood = kNone;
+  found.log_likelihood = kNone;
   return found;
 }
 

@@ -68,7 +68,6 @@ struct InstrumentNoise {
 struct NoiseEstimate {
   std::vector<InstrumentNoise> instruments;  ///< per group
   double log_likelihood = 0.0;               ///< restricted
-  double white_log_likelihood = 0.0;         ///< with a white factor per instrument alone
   Eigen::VectorXd coefficients;              ///< x at the estimate
   int evaluations = 0;                       ///< of the exact likelihood
 

@@ -65,7 +65,6 @@ class MeasurementModel {
   /// Fixes the second-order remainder (exact minus first-order functional point) at these parameters; it is
   /// added to every later prediction. Without it predictions are first order.
   void set_second_order_remainder(const Eigen::VectorXd& parameters);
-  void clear_second_order_remainder() { remainder_w_.clear(); }
 
   /// Expands the effects' drivers about the shape parameters in `parameters`; at first they are expanded
   /// about the model file's values.

@@ -43,11 +43,6 @@ BlasOnOneThread::~BlasOnOneThread() {
   if (--blas_use().works == 0) set_blas_threads(blas_use().threads_before);
 }
 
-void raise_if_interrupted() {
-  const py::gil_scoped_acquire lock;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
-
 std::function<void(const std::string& stage, double done)> progress_to(const py::handle& callback) {
   return [callback](const std::string& stage, double done) {
     const py::gil_scoped_acquire lock;

@@ -23,9 +23,6 @@ class BlasOnOneThread {
 /// raises ends the work. The caller holds `callback` until the work has ended.
 std::function<void(const std::string& stage, double done)> progress_to(const py::handle& callback);
 
-/// Throws what a signal raised.
-void raise_if_interrupted();
-
 /// Whatever may start threads, which may want to call Python, runs here.
 template <class Work>
 auto without_lock(const Work& work) {

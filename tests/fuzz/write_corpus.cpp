@@ -52,14 +52,6 @@ volcal::cli::CampaignRecord sample_record() {
   return record;
 }
 
-std::string sample_grid() {
-  volcal::VolumetricError point;
-  point.tool = "long";
-  point.value << 1e-6, 2e-6, -3e-6, 4e-6, 5e-6, 6e-6;
-  point.u.setConstant(1e-7);
-  return volcal::spatial_grid_csv({point}, volcal::testing::harness_machine(), volcal::TableContent::Errors);
-}
-
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -92,8 +84,7 @@ int main(int count, char** arguments) {
   write(folder, "archive", "sample", nlohmann::json(sample_record()).dump());
   const auto tables = volcal::result_tables(small_result(), {});
   write(folder, "errors", "functions", std::string(1, '\0') + tables[0].content);
-  write(folder, "errors", "grid", "\1" + sample_grid());
-  write(folder, "errors", "metadata", "\2" + volcal::table_metadata_csv(small_result(), {}));
+  write(folder, "errors", "metadata", "\1" + volcal::table_metadata_csv(small_result(), {}));
   const auto all = volcal::instruments();
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t set = 0; set < all[i]->schema().column_sets.size(); ++set) {

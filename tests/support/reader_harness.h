@@ -174,20 +174,15 @@ inline bool accepts_checkpoint(const std::string& bytes) {
   return accepts([&] { accepts_state(checkpoint_state(bytes, "checkpoint", kFingerprint)); });
 }
 
-/// error_tables.csv, volumetric_grid.csv or metadata.csv.
+/// error_tables.csv or metadata.csv.
 inline bool accepts_error_tables(const std::string& text, unsigned choice) {
   return accepts([&] {
     const auto content = (choice & 4U) != 0 ? TableContent::Compensations : TableContent::Errors;
     const TableFile file{"table.csv", text};
-    switch (choice % 4U) {
-      case 0:
-        read_function_table(file, content);
-        return;
-      case 1:
-        read_spatial_grid(file, harness_machine(), content);
-        return;
-      default:
-        read_table_metadata(file);
+    if (choice % 2U == 0) {
+      read_function_table(file, content);
+    } else {
+      read_table_metadata(file);
     }
   });
 }

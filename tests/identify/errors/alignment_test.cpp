@@ -141,7 +141,7 @@ Eigen::MatrixXd error_rows(const FitResult& result, const PointSet& set, const T
   Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(set.positions.size()), result.layout.size);
   for (std::size_t i = 0; i < set.positions.size(); ++i)
     rows.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
-        volumetric_error_rows(result, set.positions[i], tool).topRows<3>();
+        ErrorField(result, tool).rows(set.positions[i]).topRows<3>();
   return rows;
 }
 
@@ -302,7 +302,7 @@ PosedErrors posed_errors(const FitResult& result, const Machine& former, std::ui
     const auto tool = static_cast<std::size_t>(pose % tools);
     const Tool& before = former.tools[tool];
     const Eigen::Vector3d at_w = chain.nominal_point_w(position, before.offset);
-    errors.rows.middleRows<3>(3 * pose) = volumetric_error_rows(result, position, before).topRows<3>();
+    errors.rows.middleRows<3>(3 * pose) = ErrorField(result, before).rows(position).topRows<3>();
     errors.value.segment<3>(3 * pose) =
         errors.rows.middleRows<3>(3 * pose) * result.parameters +
         chain.nominal_rotation_wt(position) * (result.machine.tools[tool].offset - before.offset);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/support/effect_campaign.h"
+#include "tests/support/error_oracles.h"
 #include "volcal/identify/errors/acting_conditions.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/machine_effects.h"
@@ -95,7 +96,7 @@ TEST_F(BeyondConditions, WhatEndsAtZeroIsAsUncertainAsItIsLarge) {
 }
 
 TEST_F(BeyondConditions, GridsAndTablesSayTheSame) {
-  for (const VolumetricError& node : volumetric_grid(result_, 3, conditions(40.0))) {
+  for (const VolumetricError& node : testing::volumetric_grid(result_, 3, conditions(40.0))) {
     EXPECT_TRUE(node.extrapolated);
     EXPECT_NEAR(node.u[0], std::sqrt(50.0) * 1e-6, 1e-15);
   }

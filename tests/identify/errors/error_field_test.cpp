@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/support/effect_campaign.h"
+#include "tests/support/error_oracles.h"
 #include "tests/support/random_matrix.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/error_grid.h"
@@ -186,7 +187,7 @@ TEST(ErrorField, EveryWayToAskGivesTheSameError) {
     for (const Tool& tool : result.machine.tools) {
       const ErrorField field(result, tool, conditions);
       const DisplacementField fast = displacement_field(result, tool, conditions);
-      const DisplacementField plain = plain_displacement_field(result, tool, conditions);
+      const DisplacementField plain = testing::plain_displacement_field(result, tool, conditions);
       const ProgramErrors program = program_errors(result, tool.name, conditions);
       const DisplacementField of_program = program.field(tool.offset);
       const std::vector<Contribution> parts = field.contributions();
@@ -212,7 +213,7 @@ TEST(ErrorField, GridsAreTheFieldAtTheirNodesWithItsUncertainty) {
   const Conditions conditions = conditions_somewhere();
   for_each_effect("w X' b Y Z t", [&](const Campaign&, const EffectSpec& spec, const FitResult& result,
                                       std::mt19937_64&) {
-    const std::vector<VolumetricError> grid = volumetric_grid(result, 3, conditions);
+    const std::vector<VolumetricError> grid = testing::volumetric_grid(result, 3, conditions);
     std::size_t i = 0;
     for (const Tool& tool : result.machine.tools) {
       const ErrorField field(result, tool, conditions);

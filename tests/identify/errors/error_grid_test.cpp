@@ -6,10 +6,12 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/error_oracles.h"
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
 #include "tests/support/random_matrix.h"
 #include "tests/support/random_results.h"
+#include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/errors/error_tables.h"
 
 namespace volcal {
@@ -25,7 +27,7 @@ using testing_support::uniform;
 constexpr double kSameAsPlain = 1e-12;  // of the largest
 
 void expect_same_as_plain(const FitResult& result, int per_axis) {
-  const std::vector<VolumetricError> grid = volumetric_grid(result, per_axis, {});
+  const std::vector<VolumetricError> grid = testing::volumetric_grid(result, per_axis, {});
   const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
   ASSERT_EQ(grid.size(), positions.size() * result.machine.tools.size());
   double value = 0.0, square = 0.0, value_difference = 0.0, square_difference = 0.0;
@@ -81,7 +83,7 @@ TEST(ErrorGrid, CovariancesAreThoseOfThePropagationThroughTheDerivatives) {
     const std::vector<AxisPosition> positions = axes.positions();
     ASSERT_EQ(covariances.size(), positions.size());
     for (std::size_t k = 0; k < positions.size(); ++k) {
-      const Eigen::MatrixXd rows = volumetric_error_rows(result, positions[k], tool).topRows<3>();
+      const Eigen::MatrixXd rows = ErrorField(result, tool).rows(positions[k]).topRows<3>();
       const Eigen::Matrix3d plain = rows * result.covariance * rows.transpose();
       EXPECT_LT((covariances[k].matrix() - plain).cwiseAbs().maxCoeff(), kSameAsPlain * plain.maxCoeff());
     }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/error_oracles.h"
 #include "tests/support/machines.h"
 #include "tests/support/random_results.h"
 #include "volcal/identify/errors/error_field.h"
@@ -135,7 +136,7 @@ void expect_lines_as_plain(const Machine& machine, std::mt19937_64& random) {
   const auto errors = LinearAxisErrors::make(result, tool, effects_of(result, tool));
   ASSERT_TRUE(errors);
   EXPECT_TRUE(errors->effects_left_out().empty());
-  const DisplacementField plain = plain_displacement_field(result, tool_at(tool), {});
+  const DisplacementField plain = testing::plain_displacement_field(result, tool_at(tool), {});
   const std::vector<AxisPosition> positions = random_positions(result, random, 100);
   const std::vector<ApproachDirection> directions = random_directions(random, positions.size());
   double largest = 0.0, difference = 0.0;
@@ -210,7 +211,7 @@ TEST(LinearAxisErrors, BeyondTheReadingsErrorsAreHeldAsInThePlainField) {
       const Vector3d tool = random_vector(random, 0.3);
       const auto errors = LinearAxisErrors::make(result, tool, effects_of(result, tool));
       ASSERT_TRUE(errors);
-      const DisplacementField plain = plain_displacement_field(result, tool_at(tool), {});
+      const DisplacementField plain = testing::plain_displacement_field(result, tool_at(tool), {});
       double largest = 0.0, difference = 0.0;
       for (const AxisPosition& position : positions_beyond(machine, random, 60)) {
         const Vector3d wanted = plain(position, kTowardsPlus);
@@ -242,7 +243,7 @@ TEST(LinearAxisErrors, FunctionsOfHighDegreeKeepThePlainField) {
   const Vector3d tool = Vector3d::Zero();
   EXPECT_FALSE(LinearAxisErrors::make(result, tool, effects_of(result, tool)));
   const DisplacementField field = displacement_field(result, tool_at(tool), {});
-  const DisplacementField plain = plain_displacement_field(result, tool_at(tool), {});
+  const DisplacementField plain = testing::plain_displacement_field(result, tool_at(tool), {});
   for (const AxisPosition& position : random_positions(result, random, 20)) {
     const Vector3d wanted = plain(position, kTowardsPlus);
     EXPECT_LT((field(position, kTowardsPlus) - wanted).norm(), kLinesAsPlain * wanted.norm());

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/error_oracles.h"
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
 #include "tests/support/random_matrix.h"
@@ -69,7 +70,8 @@ TEST(VolumeUncertainty, IsTheSumOverTheRootsOfTheCovariance) {
   for (Eigen::Index column = 0; column < root.cols(); ++column) {
     FitResult shifted = result;
     shifted.parameters = root.col(column);
-    const DisplacementField displacements = plain_displacement_field(shifted, result.machine.tools[0], {});
+    const DisplacementField displacements =
+        testing::plain_displacement_field(shifted, result.machine.tools[0], {});
     std::vector<Eigen::Vector3d> places, errors;
     for (std::size_t i = 0; i < poses.positions.size(); ++i) {
       places.emplace_back(poses.positions[i][0], poses.positions[i][1], poses.positions[i][2]);

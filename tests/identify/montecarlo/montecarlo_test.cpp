@@ -136,7 +136,9 @@ TEST(Budget, SlopeOfLinesWithASharedScale) {
 // feel.
 TEST_F(TracerStudy, LinearPropagationIsTheCovarianceOfTheFit) {
   const RepeatedCampaign repeated(campaign(), result(), {});
-  const Eigen::MatrixXd covariance = repeated.datum().expand_covariance(repeated.linear_covariance());
+  const Eigen::MatrixXd normal = repeated.linear_root() * repeated.linear_root().transpose();
+  const Eigen::MatrixXd rectangular = repeated.response() * repeated.response().transpose();
+  const Eigen::MatrixXd covariance = repeated.datum().expand_covariance(normal + rectangular);
   for (const ErrorTableRow& row : error_table(result())) ASSERT_GE(row.u, 0.0);
   const Eigen::MatrixXd rows = error_table_derivatives(result());
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {

@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 
+#include "tests/support/error_oracles.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/identify/solve/evaluate.h"
@@ -149,7 +150,8 @@ TEST_F(ParallelAxisFit, TablesHoldTheErrorsOfTheQuill) {
 TEST_F(ParallelAxisFit, GridsStandAtHomeAndTheBudgetMovesTheQuill) {
   for (const AxisPosition& position : grid_positions(result_->machine, 3))
     EXPECT_EQ(position[index_of(AxisName::W)], -0.05);
-  const std::vector<VolumetricError> grid = volumetric_grid(*result_, 3, default_conditions(*result_));
+  const std::vector<VolumetricError> grid =
+      testing::volumetric_grid(*result_, 3, default_conditions(*result_));
   ASSERT_EQ(grid.size(), 81U);
   for (const VolumetricError& node : grid) {
     const Tool& tool = result_->machine.tools[*result_->machine.tool_index(node.tool)];

@@ -1,7 +1,7 @@
 #pragma once
 /// The smallest amplitudes of every effect of the catalogue that a campaign would show, before it is
-/// measured: what criticism lists after it (criticism/detectable.h), from the expected result and independent
-/// noise.
+/// measured: what criticism lists after it (criticism/catalogue/detectable.h), from the expected result and
+/// independent noise.
 
 #include <vector>
 

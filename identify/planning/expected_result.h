@@ -16,7 +16,7 @@
 namespace volcal {
 
 /// Readings' values play no part. Throws InputError as fit() does. With `adjustment`: linear models of
-/// criticism (criticism/linear_model.h) can be made from it.
+/// criticism (criticism/projection/linear_model.h) can be made from it.
 FitResult expected_result(const Campaign& campaign, const ModelSpec& model,
                           const FunctionRoughnessGuess& roughness, int threads = 0);
 

@@ -1,7 +1,7 @@
 #pragma once
 /// What the planner must know of an instrument: where it may stand, what it reaches from there, what one run
 /// of it measures, and how that is written down as a campaign. A new instrument is one file in instruments/
-/// and one line in instruments/registry.cpp.
+/// and one line in registry.cpp.
 ///
 /// A place is where the instrument stands in workpiece coordinates, m: a tracker's station, the centre ball
 /// of a ball-bar, a sphere on the table.

@@ -330,7 +330,7 @@ Eigen::MatrixXd PlanProblem::table_functionals(const Linearised& at) const {
 
 /// Amplitudes of the two effects with both in the model, in units of what the even grid of the probe gives:
 /// of one column each, 1 / variance is what is left of an effect after projection off the other
-/// (criticism/separation.h).
+/// (criticism/projection/separation.h).
 Eigen::MatrixXd PlanProblem::effect_functionals(const Linearised& at) const {
   const ParameterLayout& layout = at.model.layout();
   const Eigen::MatrixXd information = at.information(1.0, 0) + known(at);

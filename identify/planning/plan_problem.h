@@ -3,11 +3,11 @@
 /// machine, and how well the target is then known.
 ///
 /// Readings are linearised on the nominal machine. Unknown are the error functions (with automatic knots:
-/// eight cubic pieces and the Gaussian-process prior of the fit, solve/function_prior.h, with the roughness
-/// that is assumed; else as the model says), squareness, the model's effects, and everything that the setups
-/// bring along: stations, dead paths, a tracker's orientation, uncertain tool offsets. Noise is independent,
-/// as stated. What nothing is known of has the wide priors of solve/rank.h, so that an error that is not
-/// visible counts as 1 mm or 1 mrad and is made visible before anything else.
+/// eight cubic pieces and the Gaussian-process prior of the fit, solve/priors/function_prior.h, with the
+/// roughness that is assumed; else as the model says), squareness, the model's effects, and everything that
+/// the setups bring along: stations, dead paths, a tracker's orientation, uncertain tool offsets. Noise is
+/// independent, as stated. What nothing is known of has the wide priors of solve/rank.h, so that an error
+/// that is not visible counts as 1 mm or 1 mrad and is made visible before anything else.
 
 #include <Eigen/Core>
 #include <memory>

@@ -66,8 +66,8 @@ struct PlanBudget {
   std::optional<int> tool_count;   ///< of them; absent = all
 };
 
-/// How error functions may look before any reading is seen (solve/function_prior.h, squared exponential).
-/// Only functions with automatic knots know it; smoothing then finds it from the readings.
+/// How error functions may look before any reading is seen (solve/priors/function_prior.h, squared
+/// exponential). Only functions with automatic knots know it; smoothing then finds it from the readings.
 struct FunctionRoughnessGuess {
   double displacement = 3e-6;  ///< m, standard deviation from a straight line
   double rotation = 6e-6;      ///< rad

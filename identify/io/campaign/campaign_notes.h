@@ -17,7 +17,7 @@ void note_unused_columns(const std::vector<UnusedColumn>& unused, const Setup& s
 /// positions, times that no machine keeps.
 void note_doubtful_readings(Campaign& campaign);
 
-/// Fills the `dir_` columns that a file lacks from the order of its readings (stats/approach.h), where
+/// Fills the `dir_` columns that a file lacks from the order of its readings (standards/approach.h), where
 /// `derive` says so by setup, and notes it once. Directions of an axis that would be the same in the whole
 /// campaign stay unknown: nothing can be learnt from them.
 void derive_directions(const std::vector<bool>& derive, Campaign& campaign);

@@ -12,7 +12,7 @@
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr std::array<int, 3> kIntervals = {12, 9, 8};  // of the knots, X Y Z: fine enough for the machine
@@ -123,4 +123,4 @@ std::vector<AgreedValue> agreement(const AgreementOptions& options) {
   return values;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 struct AgreementOptions {
   int campaigns = 10000;
@@ -33,4 +33,4 @@ struct AgreedValue {
 /// Values that are exactly known are left out. Repeatable to the bit.
 std::vector<AgreedValue> agreement(const AgreementOptions& options);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -15,7 +15,7 @@
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr double kDrift = 0.4e-6;  // m
@@ -146,4 +146,4 @@ std::vector<ClosedLoopCampaign> closed_loop(const ClosedLoopOptions& options) {
   return rows;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

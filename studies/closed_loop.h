@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 struct ClosedLoopOptions {
   int campaigns = 20;
@@ -53,4 +53,4 @@ double mean_coverage(const std::map<std::string, double>& coverage);
 /// In the order of the campaigns. Repeatable to the bit.
 std::vector<ClosedLoopCampaign> closed_loop(const ClosedLoopOptions& options);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

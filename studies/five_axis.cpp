@@ -15,7 +15,7 @@
 #include "volcal/studies/files/five_axis_machines.h"
 #include "volcal/studies/five_axis_campaign.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr std::uint64_t kNoiseSeed = 500000, kPoseSeed = 900000;
@@ -194,4 +194,4 @@ std::vector<FiveAxisCampaign> five_axis_study(const FiveAxisStudyOptions& option
       });
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

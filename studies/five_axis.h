@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 struct FiveAxisStudyOptions {
   int campaigns = 8;
@@ -41,4 +41,4 @@ struct FiveAxisCampaign {
 /// of other options, or any without `resume`.
 std::vector<FiveAxisCampaign> five_axis_study(const FiveAxisStudyOptions& options);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

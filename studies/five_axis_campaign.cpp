@@ -8,7 +8,7 @@
 #include "volcal/sim/measurement/measurements.h"
 #include "volcal/studies/files/five_axis_machines.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr int kFreshPoses = 300;
@@ -194,4 +194,4 @@ double error_after_datums(
   return std::sqrt(difference.squaredNorm() / static_cast<double>(poses.size()));
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -13,7 +13,7 @@
 #include "volcal/sim/machine/truth_machine.h"
 #include "volcal/studies/files/five_axis_machines.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 struct FiveAxisErrors {
   double displacement = 3e-6;        ///< RMS of a rotary error motion, m
@@ -62,4 +62,4 @@ double error_after_datums(
     const std::function<Eigen::Vector3d(const AxisPosition& position, std::size_t tool)>& predicted,
     std::uint64_t seed);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

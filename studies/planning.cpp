@@ -11,7 +11,7 @@
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr std::size_t kPlannedMachines[] = {0, 1, 3};  // of the reference machines
@@ -123,4 +123,4 @@ std::vector<PlannedMachine> planning_study(const PlanningStudyOptions& options) 
   return planned;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 struct PlanningStudyOptions {
   int campaigns = 3;  ///< of each layout
@@ -37,4 +37,4 @@ struct PlannedMachine {
 
 std::vector<PlannedMachine> planning_study(const PlanningStudyOptions& options);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -11,7 +11,7 @@
 #include "volcal/studies/criticism/criticism_plan.h"
 #include "volcal/studies/files/finished_campaigns.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 using Key = std::pair<std::string, int>;  // row and index
@@ -66,4 +66,4 @@ std::vector<CampaignRecord> criticism(const CriticismOptions& options) {
       [&](std::size_t, const CampaignRecord& record) { finished.append(record); });
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

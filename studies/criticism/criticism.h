@@ -11,7 +11,7 @@
 #include "volcal/identify/criticism/data/search_rules.h"
 #include "volcal/studies/criticism/criticism_record.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// Which campaigns a study of model criticism makes, and where it keeps those that are finished.
 struct CriticisedCampaigns {
@@ -33,4 +33,4 @@ struct CriticismOptions : CriticisedCampaigns {
 /// (without `resume`), or campaigns of another seed, size or set of rules (with it).
 std::vector<CampaignRecord> criticism(const CriticismOptions& options);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -20,7 +20,7 @@
 #include "volcal/studies/criticism/criticism_plan.h"
 #include "volcal/studies/criticism/yardstick.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr double kTrialRms = 1e-6;        // m
@@ -372,4 +372,4 @@ std::optional<sim::Study> study_of_campaign(const std::string& row, int index, s
   return CampaignRun(row, index, seed, readings).study();
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -9,7 +9,7 @@
 #include "volcal/sim/study.h"
 #include "volcal/studies/criticism/criticism_record.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// Repeatable to the bit.
 CampaignRecord criticise_campaign(const std::string& row, int index, std::uint64_t seed, int readings,
@@ -19,4 +19,4 @@ CampaignRecord criticise_campaign(const std::string& row, int index, std::uint64
 std::optional<sim::Study> study_of_campaign(const std::string& row, int index, std::uint64_t seed,
                                             int readings);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

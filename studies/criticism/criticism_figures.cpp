@@ -10,7 +10,7 @@
 
 #include "volcal/studies/criticism/criticism_plan.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr std::size_t kLargestSet = 3;
@@ -500,4 +500,4 @@ std::map<std::string, std::map<std::string, int>> confusion_of(const Campaigns& 
   return confusion;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

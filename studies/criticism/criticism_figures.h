@@ -10,7 +10,7 @@
 
 #include "volcal/studies/criticism/criticism_record.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// What became of a campaign, against what was hidden.
 enum class Outcome {
@@ -80,4 +80,4 @@ std::vector<Detection> detections_of(const Campaigns& campaigns);
 /// What was hidden -> what was said -> how often.
 std::map<std::string, std::map<std::string, int>> confusion_of(const Campaigns& campaigns);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

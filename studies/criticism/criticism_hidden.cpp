@@ -11,7 +11,7 @@
 #include "volcal/model/description/symbols.h"
 #include "volcal/sim/measurement/measurements.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr std::array<const char*, 3> kAxes = {"X", "Y", "Z"};
@@ -298,4 +298,4 @@ sim::HiddenEffect first_of_kind(const std::string& kind, const sim::Study& study
   return effect;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

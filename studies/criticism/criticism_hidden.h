@@ -7,7 +7,7 @@
 #include "volcal/sim/machine/random.h"
 #include "volcal/sim/study.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// Kinds of sim/ that the catalogue holds, and kinds that it does not.
 std::span<const std::string> listed_kinds();
@@ -26,4 +26,4 @@ sim::HiddenEffect random_effect(const std::string& kind, const sim::Study& study
 /// Of the first axis, channel and so on, for kinds with neither shape nor direction.
 sim::HiddenEffect first_of_kind(const std::string& kind, const sim::Study& study);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

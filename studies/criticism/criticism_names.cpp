@@ -13,7 +13,7 @@
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/instruments/registry.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr double kNotable = 0.5;  // component of a direction against its largest
@@ -271,4 +271,4 @@ std::string text_of(const sim::HiddenEffect& hidden) {
   return text;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

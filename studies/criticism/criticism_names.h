@@ -11,7 +11,7 @@
 #include "volcal/model/effects/effect.h"
 #include "volcal/sim/hidden/hidden_effects.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 struct RightAnswer {
   /// The effect of the catalogue, with the true parameters of its shape and no amplitude; none when the
@@ -28,4 +28,4 @@ RightAnswer right_answer(const sim::HiddenEffect& hidden, const Campaign& campai
 /// "screw-lead EXX period=0.01": kind and keys, SI.
 std::string text_of(const sim::HiddenEffect& hidden);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -16,7 +16,7 @@
 #include "volcal/studies/criticism/criticism_hidden.h"
 #include "volcal/studies/criticism/rotary_campaigns.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr std::array<double, 7> kSignals = {5.0, 7.0, 10.0, 12.0, 15.0, 20.0, 30.0};
@@ -319,4 +319,4 @@ PlannedCampaign plan_campaign(const std::string& row, int index, std::uint64_t s
   return Planner(row, index, seed, readings, attempt).plan();
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -26,7 +26,7 @@
 #include "volcal/sim/study.h"
 #include "volcal/studies/criticism/criticism_names.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// Names of the rows, in the order of the table.
 std::span<const std::string> criticism_rows();
@@ -59,4 +59,4 @@ inline constexpr int kAttemptsPerKind = 6;
 PlannedCampaign plan_campaign(const std::string& row, int index, std::uint64_t seed, int readings,
                               int attempt);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AmplitudeRecord, value, u, mdb, truth)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AnswerRecord, name, hidden, by_name, resolution, scanned, explains,
@@ -33,4 +33,4 @@ void from_json(const nlohmann::json& json, CampaignRecord& record) {
   record = fields;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// An amplitude that the diagnosis stated, in the unit of the catalogue.
 struct AmplitudeRecord {
@@ -95,4 +95,4 @@ struct CampaignRecord {
 void to_json(nlohmann::json& json, const CampaignRecord& record);
 void from_json(const nlohmann::json& json, CampaignRecord& record);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

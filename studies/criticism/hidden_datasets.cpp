@@ -16,7 +16,7 @@
 #include "volcal/studies/criticism/yardstick.h"
 #include "volcal/studies/files/study_reader.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 std::vector<std::filesystem::path> study_files(const HiddenDatasetOptions& options) {
@@ -104,4 +104,4 @@ std::vector<HiddenDatasetRow> hidden_datasets(const HiddenDatasetOptions& option
   return rows;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

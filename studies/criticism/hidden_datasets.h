@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 struct HiddenDatasetRow {
   std::string name;                  ///< of the file, "04"
@@ -36,4 +36,4 @@ struct HiddenDatasetOptions {
 /// In the order of names. Throws InputError for a folder without study files and a name that none has.
 std::vector<HiddenDatasetRow> hidden_datasets(const HiddenDatasetOptions& options);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -19,7 +19,7 @@
 #include "volcal/studies/criticism/yardstick.h"
 #include "volcal/studies/files/finished_campaigns.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DiagnosedMill, seed, hidden, found, other_functions, wrong_effects,
                                    given_um, offered_um, without, seconds)
@@ -249,4 +249,4 @@ std::vector<DiagnosedMill> mill_study(const MillStudyOptions& options) {
       [&](std::size_t, const DiagnosedMill& record) { finished.append(record); });
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

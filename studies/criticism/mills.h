@@ -15,7 +15,7 @@
 
 #include "volcal/identify/criticism/data/search_rules.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// What a diagnosis of a mill accepts.
 struct DiagnosedMill {
@@ -44,4 +44,4 @@ struct MillStudyOptions {
 /// other rules, or any without `resume`.
 std::vector<DiagnosedMill> mill_study(const MillStudyOptions& options);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -15,7 +15,7 @@
 #include "volcal/studies/criticism/criticism_campaign.h"
 #include "volcal/studies/files/finished_campaigns.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PreviewRecord, effect, miss, refit_miss, said)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PreviewedCampaign, campaign, seed, readings, failure, previews)
@@ -159,4 +159,4 @@ Share misses_said(const std::vector<PreviewedCampaign>& campaigns) {
   return share;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -13,7 +13,7 @@
 
 #include "volcal/studies/criticism/criticism_figures.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// An effect that was added and confirmed.
 struct PreviewRecord {
@@ -55,4 +55,4 @@ Share refits_that_held(const std::vector<PreviewedCampaign>& campaigns);
 /// Of refits that did not hold, how many the session said so of.
 Share misses_said(const std::vector<PreviewedCampaign>& campaigns);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

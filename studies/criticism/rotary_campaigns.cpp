@@ -8,7 +8,7 @@
 
 #include "volcal/studies/files/five_axis_machines.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr double kLinearShare = 1.0 / 3.0;  // of the readings
@@ -109,4 +109,4 @@ ModelSpec without_rotary_errors(const Machine& machine) {
   return model;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

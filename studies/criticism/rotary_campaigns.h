@@ -9,7 +9,7 @@
 #include "volcal/sim/machine/random.h"
 #include "volcal/sim/study.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// Kinds of sim/ that are hidden in rotary axes, all of them in the catalogue.
 std::span<const std::string> rotary_kinds();
@@ -27,4 +27,4 @@ sim::HiddenEffect random_rotary_effect(const std::string& kind, const sim::Study
 /// A model that knows linear axes alone: error motions and location errors of rotary axes are zero.
 ModelSpec without_rotary_errors(const Machine& machine);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -13,7 +13,7 @@
 #include "volcal/studies/criticism/criticism_plan.h"
 #include "volcal/studies/files/finished_campaigns.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RuleCampaign, all, seconds, decided, without, seconds_without)
 
@@ -148,4 +148,4 @@ std::vector<RuleRow> rows_of(const std::vector<RuleCampaign>& campaigns,
   return rows;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

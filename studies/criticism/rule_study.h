@@ -14,7 +14,7 @@
 #include "volcal/studies/criticism/criticism.h"
 #include "volcal/studies/criticism/criticism_record.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 struct RuleCampaign {
   CampaignRecord all;                             ///< every rule followed
@@ -53,4 +53,4 @@ struct RuleRow {
 std::vector<RuleRow> rows_of(const std::vector<RuleCampaign>& campaigns,
                              const std::vector<std::string>& rules);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

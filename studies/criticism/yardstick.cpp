@@ -12,7 +12,7 @@
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/channels.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 /// Readings of `b` less those of `a`, in the order of observations.
@@ -141,4 +141,4 @@ std::vector<NoiseParameters> Yardstick::true_noise() const {
   return noise;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

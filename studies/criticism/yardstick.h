@@ -12,7 +12,7 @@
 #include "volcal/model/description/model_spec.h"
 #include "volcal/sim/study.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// Adjusted as `volcal diagnose` does, by one thread.
 FitResult fitted(const Campaign& campaign, const ModelSpec& model);
@@ -59,7 +59,7 @@ class Yardstick {
 
   const Campaign& campaign() const { return simulated_.campaign; }
   /// Of the campaign with nothing hidden: what an oracle would reach.
-  double unseen_square() const { return cli::unseen_square(simulated_, result_); }
+  double unseen_square() const { return studies::unseen_square(simulated_, result_); }
 
  private:
   static Explained explained(const Eigen::VectorXd& change, const Eigen::MatrixXd& columns,
@@ -74,4 +74,4 @@ class Yardstick {
   Projector free_;
 };
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

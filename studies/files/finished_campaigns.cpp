@@ -5,7 +5,7 @@
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/nesting.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 bool take_campaign(const std::string& line, const SourcePlace& place, const TakeCampaign& take) {
   require_shallow(line, NestedText::Json, place.file);
@@ -53,4 +53,4 @@ void FinishedCampaigns::read(const TakeCampaign& take) {
   std::ofstream(path_, std::ios::trunc) << complete;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

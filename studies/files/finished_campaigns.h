@@ -17,7 +17,7 @@
 #include "volcal/identify/numeric/threads.h"
 #include "volcal/model/description/errors.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 using TakeCampaign = std::function<void(const nlohmann::json& campaign, const SourcePlace& place)>;
 
@@ -76,4 +76,4 @@ std::vector<Record> all_campaigns(std::size_t count, int threads,
   return records;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 const std::vector<std::string>& five_axis_structures() {
   static const std::vector<std::string> kStructures = {"w C' A' b X Y Z t", "w X' b Y Z C B t",
@@ -32,4 +32,4 @@ AxisName tilting_axis(const Machine& machine) {
   return machine.has_axis(AxisName::A) ? AxisName::A : AxisName::B;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -6,7 +6,7 @@
 
 #include "volcal/model/description/machine.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// Table, head, one on either side, and a table that tilts about Y.
 const std::vector<std::string>& five_axis_structures();
@@ -17,4 +17,4 @@ Machine five_axis_machine(const std::string& structure);
 /// A or B, whichever the machine has beside C.
 AxisName tilting_axis(const Machine& machine);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -17,7 +17,7 @@
 #include "volcal/studies/files/control_tables.h"
 #include "volcal/studies/tables/exact_machine.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr double kReversal = 4e-6;         // m, largest
@@ -250,4 +250,4 @@ std::vector<CompensationStudyRow> compensation_study(const CompensationStudyOpti
   return rows;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

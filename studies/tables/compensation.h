@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 struct CompensationStudyOptions {
   int machines = 3;
@@ -42,4 +42,4 @@ inline constexpr const char* kCompensatedTool = "side_x";
 /// In the order of the machines, formats and types. Repeatable to the bit.
 std::vector<CompensationStudyRow> compensation_study(const CompensationStudyOptions& options);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -17,7 +17,7 @@
 #include "volcal/studies/tables/exact_machine.h"
 #include "volcal/studies/tables/rigid_ideal.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr const char* kTool = "side_x";
@@ -234,4 +234,4 @@ std::vector<EffectTablesRow> effect_tables_study(const EffectTablesOptions& opti
   return rows;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

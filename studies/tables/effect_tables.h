@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 struct EffectTablesOptions {
   int structures = 4;  ///< of sim::reference_machines()
@@ -42,4 +42,4 @@ struct EffectTablesRow {
 /// In the order of structures, cases and formats. Repeatable to the bit.
 std::vector<EffectTablesRow> effect_tables_study(const EffectTablesOptions& options);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -5,7 +5,7 @@
 #include "volcal/sim/machine/transforms.h"
 #include "volcal/studies/files/control_tables.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 sim::MachineState state_at(const JudgedMachine& judged, const VolumePoint& point) {
@@ -51,4 +51,4 @@ double exact_rms(const JudgedMachine& judged, std::span<const VolumePoint> point
   return sim::rms_after_alignment(places, errors);
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -11,7 +11,7 @@
 #include "volcal/sim/machine/control.h"
 #include "volcal/sim/machine/truth_machine.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 /// Of tables against the ideal compensation, as volcal tables has it, m.
 inline constexpr double kStudyTableTolerance = 0.2e-6;
@@ -38,4 +38,4 @@ Eigen::Vector3d exact_error(const JudgedMachine& judged, const VolumePoint& poin
 /// sqrt(mean |e|^2) after the best rigid motion, m.
 double exact_rms(const JudgedMachine& judged, std::span<const VolumePoint> points);
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

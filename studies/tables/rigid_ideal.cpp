@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr std::size_t kPerPosition = 6;
@@ -138,4 +138,4 @@ Eigen::Vector3d RigidIdeal::along(AxisName axis, double q, int direction) const 
   return (1.0 - share) * at(low) + share * at(high);
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -10,7 +10,7 @@
 
 #include "volcal/identify/compensation/checks/volume_check.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 
 class RigidIdeal {
  public:
@@ -45,4 +45,4 @@ class RigidIdeal {
   std::vector<Eigen::Vector3d> left_;
 };
 
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -12,8 +12,8 @@
 namespace volcal {
 namespace {
 
-using cli::AnswerRecord;
-using cli::CampaignRecord;
+using studies::AnswerRecord;
+using studies::CampaignRecord;
 
 /// One effect of ten times the noise in a set; what each member leaves of it, in units of the noise.
 CampaignRecord in_a_set(const std::vector<double>& left) {
@@ -33,19 +33,21 @@ CampaignRecord in_a_set(const std::vector<double>& left) {
 }
 
 TEST(CriticismFigures, ReadingsLeaveManyWhereOverThreeAreAsGoodAsTheTruth) {
-  EXPECT_TRUE(cli::readings_leave_many(in_a_set({0.0, 1.0, 3.0, 3.9})));
-  EXPECT_FALSE(cli::readings_leave_many(in_a_set({0.0, 1.0, 3.0, 4.1}))) << "three may be told from the rest";
-  EXPECT_FALSE(cli::readings_leave_many(in_a_set({0.0, 1.0, 1.0}))) << "no large set";
-  EXPECT_FALSE(cli::readings_leave_many(in_a_set({1.0, 1.0, 1.0, 1.0}))) << "without the right one";
+  EXPECT_TRUE(studies::readings_leave_many(in_a_set({0.0, 1.0, 3.0, 3.9})));
+  EXPECT_FALSE(studies::readings_leave_many(in_a_set({0.0, 1.0, 3.0, 4.1})))
+      << "three may be told from the rest";
+  EXPECT_FALSE(studies::readings_leave_many(in_a_set({0.0, 1.0, 1.0}))) << "no large set";
+  EXPECT_FALSE(studies::readings_leave_many(in_a_set({1.0, 1.0, 1.0, 1.0}))) << "without the right one";
 }
 
 TEST(CriticismPlan, WhatRowListedHidesIsInTheCatalogue) {
-  const int twice_every_kind = 2 * static_cast<int>(cli::listed_kinds().size());
+  const int twice_every_kind = 2 * static_cast<int>(studies::listed_kinds().size());
   for (int i = 0; i < twice_every_kind; ++i) {
-    const cli::PlannedCampaign plan = cli::plan_campaign("listed", i, 1, 400, 0);
+    const studies::PlannedCampaign plan = studies::plan_campaign("listed", i, 1, 400, 0);
     const sim::SimulatedCampaign simulated = sim::simulate(plan.study);
-    for (const cli::PlannedEffect& hidden : plan.hidden)
-      EXPECT_TRUE(cli::right_answer(hidden.effect, simulated.campaign).name) << cli::text_of(hidden.effect);
+    for (const studies::PlannedEffect& hidden : plan.hidden)
+      EXPECT_TRUE(studies::right_answer(hidden.effect, simulated.campaign).name)
+          << studies::text_of(hidden.effect);
   }
 }
 

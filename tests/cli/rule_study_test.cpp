@@ -15,10 +15,10 @@ namespace volcal {
 namespace {
 
 using Json = nlohmann::json;
-using cli::AnswerRecord;
-using cli::CampaignRecord;
-using cli::HiddenRecord;
-using cli::RuleCampaign;
+using studies::AnswerRecord;
+using studies::CampaignRecord;
+using studies::HiddenRecord;
+using studies::RuleCampaign;
 using ::testing::HasSubstr;
 using testing::run_program;
 
@@ -67,10 +67,10 @@ TEST(RuleStudy, CountsWhatIsReportedOtherwise) {
   RuleCampaign silent = campaign_of(nothing_hidden("NOTHING_ABOVE"), 1.0, "estimated-noise");
   silent.without["estimated-noise"] = nothing_hidden("UNKNOWN");
   silent.seconds_without["estimated-noise"] = 1.0;
-  const auto rows = cli::rows_of({kept, same, silent}, {"recheck", "estimated-noise", "one-cause"});
+  const auto rows = studies::rows_of({kept, same, silent}, {"recheck", "estimated-noise", "one-cause"});
   ASSERT_EQ(rows.size(), 4U);
   const auto counts = [&](std::size_t row) {
-    const cli::RuleCounts& counted = rows[row].counts;
+    const studies::RuleCounts& counted = rows[row].counts;
     return std::vector{rows[row].decided, rows[row].changed, counted.right,
                        counted.wrong,     counted.alarms,    counted.removed};
   };

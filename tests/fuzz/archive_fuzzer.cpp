@@ -11,8 +11,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string line(data, data + size);
   volcal::testing::accepts([&] {
-    volcal::cli::take_campaign(line, {"campaigns.jsonl", 1}, [](const nlohmann::json& json, const auto&) {
-      static_cast<void>(json.get<volcal::cli::CampaignRecord>());
+    volcal::studies::take_campaign(line, {"campaigns.jsonl", 1}, [](const nlohmann::json& json, const auto&) {
+      static_cast<void>(json.get<volcal::studies::CampaignRecord>());
     });
   });
   return 0;

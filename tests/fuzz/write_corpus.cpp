@@ -35,14 +35,14 @@ std::string sample_state() {
   return writer.take();
 }
 
-volcal::cli::CampaignRecord sample_record() {
-  volcal::cli::HiddenRecord hidden;
+volcal::studies::CampaignRecord sample_record() {
+  volcal::studies::HiddenRecord hidden;
   hidden.text = "reversal";
   hidden.drivers = {"dir_x"};
-  volcal::cli::AnswerRecord answer;
+  volcal::studies::AnswerRecord answer;
   answer.name = "reversal:EXX:dir_x:step";
   answer.amplitudes = {{1.0, 0.1, 0.2, 1.1}};
-  volcal::cli::CampaignRecord record;
+  volcal::studies::CampaignRecord record;
   record.row = "listed";
   record.hidden = {hidden};
   record.named = {answer};

@@ -9,14 +9,14 @@
 
 namespace volcal::testing_support {
 
-using cli::error_after_datums;
-using cli::five_axis_machine;
-using cli::five_axis_truth;
-using cli::FiveAxisErrors;
-using cli::followed;
-using cli::GridPlan;
-using cli::r_test_campaign;
-using cli::state_of;
+using studies::error_after_datums;
+using studies::five_axis_machine;
+using studies::five_axis_truth;
+using studies::FiveAxisErrors;
+using studies::followed;
+using studies::GridPlan;
+using studies::r_test_campaign;
+using studies::state_of;
 
 inline double normal(std::mt19937_64& random, double sigma) {
   return std::normal_distribution<double>(0.0, sigma)(random);

@@ -12,7 +12,7 @@ namespace {
 std::function<int()> define_study(CLI::App& app) {
   app.require_subcommand(0, 1);
   auto work = std::make_shared<std::map<CLI::App*, std::function<int()>>>();
-  for (const Command* study : studies()) {
+  for (const Command* study : study_commands()) {
     CLI::App* sub = app.add_subcommand(std::string(study->name), std::string(study->summary));
     sub->footer("Examples:\n" + std::string(study->examples));
     (*work)[sub] = study->define(*sub);

@@ -232,8 +232,8 @@ class FreshPoses {
  public:
   explicit FreshPoses(const Machine& machine)
       : machine_(machine),
-        poses_(cli::fresh_poses(machine, 1)),
-        datums_(cli::setup_datums(machine, poses_)) {}
+        poses_(studies::fresh_poses(machine, 1)),
+        datums_(studies::setup_datums(machine, poses_)) {}
 
   /// Displacements per parameter, without what the datums take.
   Eigen::MatrixXd rows(const FitResult& result) const {
@@ -258,7 +258,7 @@ class FreshPoses {
 
  private:
   const Machine& machine_;
-  std::vector<cli::FreshPose> poses_;
+  std::vector<studies::FreshPose> poses_;
   Eigen::MatrixXd datums_;
 };
 

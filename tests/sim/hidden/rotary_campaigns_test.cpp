@@ -14,7 +14,7 @@
 #include "volcal/studies/criticism/criticism_names.h"
 #include "volcal/studies/criticism/criticism_plan.h"
 
-namespace volcal::cli {
+namespace volcal::studies {
 namespace {
 
 constexpr int kReadings = 1500;
@@ -93,4 +93,4 @@ TEST(RotaryCampaigns, TheModelLacksTheRotaryErrors) {
 }
 
 }  // namespace
-}  // namespace volcal::cli
+}  // namespace volcal::studies

@@ -19,7 +19,7 @@ namespace volcal::cli {
 namespace {
 
 struct AgreementArguments {
-  AgreementOptions options;
+  studies::AgreementOptions options;
   bool json = false;
 };
 
@@ -29,7 +29,7 @@ struct RatioRange {
   double least[2] = {INFINITY, INFINITY};
   double largest[2] = {0.0, 0.0};
 
-  void add(const AgreedValue& value) {
+  void add(const studies::AgreedValue& value) {
     const double ratio[2] = {value.u_montecarlo / value.u_linear, value.u_scatter / value.u_linear};
     ++values;
     for (int k = 0; k < 2; ++k) {
@@ -39,16 +39,17 @@ struct RatioRange {
   }
 };
 
-std::map<std::string, RatioRange> by_symbol(const std::vector<AgreedValue>& values) {
+std::map<std::string, RatioRange> by_symbol(const std::vector<studies::AgreedValue>& values) {
   std::map<std::string, RatioRange> ranges;
-  for (const AgreedValue& value : values) {
+  for (const studies::AgreedValue& value : values) {
     ranges[value.symbol].add(value);
     ranges["all"].add(value);
   }
   return ranges;
 }
 
-std::string agreement_text(const AgreementOptions& options, const std::vector<AgreedValue>& values) {
+std::string agreement_text(const studies::AgreementOptions& options,
+                           const std::vector<studies::AgreedValue>& values) {
   TextTable table({{"symbol", Align::Left}, {"values"}, {"Monte Carlo / linear"}, {"scatter / linear"}},
                   "Standard uncertainties of the table values, least to largest ratio");
   const auto range = [](const RatioRange& of, int k) {
@@ -69,11 +70,11 @@ std::string agreement_text(const AgreementOptions& options, const std::vector<Ag
       100.0 / std::sqrt(2.0 * (static_cast<double>(options.draws) - 1.0)), table.text());
 }
 
-nlohmann::ordered_json agreement_json(const AgreementOptions& options,
-                                      const std::vector<AgreedValue>& values) {
+nlohmann::ordered_json agreement_json(const studies::AgreementOptions& options,
+                                      const std::vector<studies::AgreedValue>& values) {
   nlohmann::ordered_json json = {
       {"study", "agreement"}, {"campaigns", options.campaigns}, {"draws", options.draws}};
-  for (const AgreedValue& value : values) {
+  for (const studies::AgreedValue& value : values) {
     json["values"].push_back({{"symbol", value.symbol},
                               {"montecarlo_over_linear", value.u_montecarlo / value.u_linear},
                               {"scatter_over_linear", value.u_scatter / value.u_linear}});
@@ -84,7 +85,7 @@ nlohmann::ordered_json agreement_json(const AgreementOptions& options,
 int run_agreement(AgreementArguments arguments) {
   ProgressBar bar("agreement");
   arguments.options.progress = counted_on(bar, "campaigns");
-  const std::vector<AgreedValue> values = agreement(arguments.options);
+  const std::vector<studies::AgreedValue> values = studies::agreement(arguments.options);
   bar.finish();
   return print_outcome(
       arguments.json, [&] { return agreement_json(arguments.options, values); },
@@ -93,7 +94,7 @@ int run_agreement(AgreementArguments arguments) {
 
 std::function<int()> define_agreement(CLI::App& app) {
   auto arguments = std::make_shared<AgreementArguments>();
-  AgreementOptions& options = arguments->options;
+  studies::AgreementOptions& options = arguments->options;
   app.add_option("-n,--campaigns", options.campaigns)->check(CLI::Range(2, 1000000))->capture_default_str();
   app.add_option("--draws", options.draws, "of Monte Carlo")
       ->check(CLI::Range(2, 100000000))

@@ -18,13 +18,13 @@ namespace volcal::cli {
 namespace {
 
 struct ClosedLoopArguments {
-  ClosedLoopOptions options;
+  studies::ClosedLoopOptions options;
   std::string noise = "white";
   bool small = false;
   bool json = false;
 };
 
-using ClosedLoopCampaigns = std::vector<ClosedLoopCampaign>;
+using ClosedLoopCampaigns = std::vector<studies::ClosedLoopCampaign>;
 
 double quantile(std::vector<double> values, double p) {
   std::ranges::sort(values);
@@ -50,7 +50,7 @@ MeanWithError mean_of(const std::vector<double>& values) {
 template <class Figure>
 std::vector<double> collect(const ClosedLoopCampaigns& campaigns, const Figure& figure) {
   std::vector<double> values;
-  for (const ClosedLoopCampaign& campaign : campaigns) values.push_back(figure(campaign));
+  for (const studies::ClosedLoopCampaign& campaign : campaigns) values.push_back(figure(campaign));
   return values;
 }
 
@@ -71,8 +71,9 @@ struct Row {
 
 Row row_of(const std::string& name, const ClosedLoopCampaigns& campaigns) {
   const auto after = collect(campaigns, [](const auto& c) { return c.rms_after; });
-  const auto coverage = collect(campaigns, [](const auto& c) { return mean_coverage(c.coverage); });
-  const auto white = collect(campaigns, [](const auto& c) { return mean_coverage(c.white_coverage); });
+  const auto coverage = collect(campaigns, [](const auto& c) { return studies::mean_coverage(c.coverage); });
+  const auto white =
+      collect(campaigns, [](const auto& c) { return studies::mean_coverage(c.white_coverage); });
   const auto ratio = collect(campaigns, [](const auto& c) { return c.rms_after / c.best_fixed(); });
   return {name,
           static_cast<int>(campaigns.size()),
@@ -91,7 +92,7 @@ Row row_of(const std::string& name, const ClosedLoopCampaigns& campaigns) {
 std::vector<Row> rows_of(const ClosedLoopCampaigns& campaigns) {
   std::map<std::string, ClosedLoopCampaigns> by_structure;
   std::vector<std::string> order;
-  for (const ClosedLoopCampaign& campaign : campaigns) {
+  for (const studies::ClosedLoopCampaign& campaign : campaigns) {
     if (!by_structure.contains(campaign.structure)) order.push_back(campaign.structure);
     by_structure[campaign.structure].push_back(campaign);
   }
@@ -105,7 +106,7 @@ std::vector<Row> rows_of(const ClosedLoopCampaigns& campaigns) {
 /// Share per symbol over the campaigns: mean and 5th percentile.
 std::map<std::string, std::vector<double>> coverage_by_symbol(const ClosedLoopCampaigns& campaigns) {
   std::map<std::string, std::vector<double>> shares;
-  for (const ClosedLoopCampaign& campaign : campaigns) {
+  for (const studies::ClosedLoopCampaign& campaign : campaigns) {
     for (const auto& [symbol, share] : campaign.coverage) shares[symbol].push_back(share);
   }
   return shares;
@@ -157,20 +158,20 @@ nlohmann::ordered_json closed_loop_json(const ClosedLoopArguments& arguments,
   nlohmann::ordered_json json = {{"study", "closed-loop"},
                                  {"seed", arguments.options.seed},
                                  {"shared_sources", arguments.options.shared_sources}};
-  for (const ClosedLoopCampaign& campaign : campaigns) {
+  for (const studies::ClosedLoopCampaign& campaign : campaigns) {
     nlohmann::ordered_json entry = {{"structure", campaign.structure},
                                     {"seed", campaign.seed},
                                     {"rms_before_um", campaign.rms_before * kPerMicro},
                                     {"rms_after_um", campaign.rms_after * kPerMicro},
                                     {"reduced_chi2", campaign.reduced_chi2},
-                                    {"coverage95", mean_coverage(campaign.coverage)},
+                                    {"coverage95", studies::mean_coverage(campaign.coverage)},
                                     {"coverage95_of", campaign.coverage}};
     if (arguments.options.fixed_knots) {
       for (const double rms : campaign.rms_fixed) entry["rms_fixed_um"].push_back(rms * kPerMicro);
     }
     if (arguments.options.correlated_noise) {
       entry["white_rms_after_um"] = campaign.white_rms_after * kPerMicro;
-      entry["white_coverage95"] = mean_coverage(campaign.white_coverage);
+      entry["white_coverage95"] = studies::mean_coverage(campaign.white_coverage);
     }
     json["campaigns"].push_back(entry);
   }
@@ -201,7 +202,7 @@ int run_closed_loop_study(ClosedLoopArguments arguments) {
   arguments.options.correlated_noise = arguments.noise == "correlated";
   ProgressBar bar("closed loop");
   arguments.options.progress = counted_on(bar, "campaigns");
-  const ClosedLoopCampaigns campaigns = closed_loop(arguments.options);
+  const ClosedLoopCampaigns campaigns = studies::closed_loop(arguments.options);
   bar.finish();
   return print_outcome(
       arguments.json, [&] { return closed_loop_json(arguments, campaigns); },
@@ -210,7 +211,7 @@ int run_closed_loop_study(ClosedLoopArguments arguments) {
 
 std::function<int()> define_closed_loop_study(CLI::App& app) {
   auto arguments = std::make_shared<ClosedLoopArguments>();
-  ClosedLoopOptions& options = arguments->options;
+  studies::ClosedLoopOptions& options = arguments->options;
   app.add_option("-n,--campaigns", options.campaigns, "structures take turns")
       ->check(positive())
       ->capture_default_str();

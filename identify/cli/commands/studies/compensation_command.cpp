@@ -17,10 +17,10 @@
 namespace volcal::cli {
 namespace {
 
-using CompensationRows = std::vector<CompensationStudyRow>;
+using CompensationRows = std::vector<studies::CompensationStudyRow>;
 
 struct CompensationArguments {
-  CompensationStudyOptions options;
+  studies::CompensationStudyOptions options;
   bool json = false;
 };
 
@@ -32,13 +32,13 @@ struct CompensationSummary {
   double volumetric = 0.0;    ///< L-VOL left, formats that tell directions apart, m
 };
 
-bool tells_directions(const CompensationStudyRow& row) {
+bool tells_directions(const studies::CompensationStudyRow& row) {
   return find_table_format(row.format)->limits.both_directions;
 }
 
 CompensationSummary summary_of(const CompensationRows& rows) {
   CompensationSummary summary;
-  for (const CompensationStudyRow& row : rows) {
+  for (const studies::CompensationStudyRow& row : rows) {
     summary.least_before = std::min(summary.least_before, row.before);
     if (!row.variant.empty()) continue;
     const bool volumetric = row.type == CompensationType::volumetric().name();
@@ -74,9 +74,9 @@ std::string compensation_rows_text(const CompensationArguments& arguments, const
        {"", Align::Left}},
       fmt::format("Volumetric error of tool {} at fresh points from both sides; read: other setups "
                   "against the nominal machine",
-                  kCompensatedTool));
+                  studies::kCompensatedTool));
   std::string structure;
-  for (const CompensationStudyRow& row : rows) {
+  for (const studies::CompensationStudyRow& row : rows) {
     table.add_row({row.structure == structure ? "" : row.structure, row.format, row.type,
                    fixed_number(row.before / kMicro, 2), fixed_number(row.ideal / kMicro, 2),
                    fixed_number(row.ideal_format / kMicro, 2), fixed_number(row.applied / kMicro, 2),
@@ -98,9 +98,9 @@ nlohmann::ordered_json compensation_rows_json(const CompensationArguments& argum
                                               const CompensationRows& rows) {
   nlohmann::ordered_json json = {{"study", "compensation"},
                                  {"seed", arguments.options.seed},
-                                 {"tool", kCompensatedTool},
+                                 {"tool", studies::kCompensatedTool},
                                  {"rows", nlohmann::ordered_json::array()}};
-  for (const CompensationStudyRow& row : rows) {
+  for (const studies::CompensationStudyRow& row : rows) {
     nlohmann::ordered_json entry = {{"structure", row.structure},
                                     {"format", row.format},
                                     {"type", row.type},
@@ -126,7 +126,7 @@ nlohmann::ordered_json compensation_rows_json(const CompensationArguments& argum
 int run_compensation_study(CompensationArguments arguments) {
   ProgressBar bar("compensation");
   arguments.options.progress = counted_on(bar, "machines");
-  const CompensationRows rows = compensation_study(arguments.options);
+  const CompensationRows rows = studies::compensation_study(arguments.options);
   bar.finish();
   return print_outcome(
       arguments.json, [&] { return compensation_rows_json(arguments, rows); },
@@ -135,7 +135,7 @@ int run_compensation_study(CompensationArguments arguments) {
 
 std::function<int()> define_compensation_study(CLI::App& app) {
   auto arguments = std::make_shared<CompensationArguments>();
-  CompensationStudyOptions& options = arguments->options;
+  studies::CompensationStudyOptions& options = arguments->options;
   app.add_option("-n,--machines", options.machines, "structures take turns")
       ->check(positive())
       ->capture_default_str();

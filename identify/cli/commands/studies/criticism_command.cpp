@@ -22,30 +22,30 @@ namespace volcal::cli {
 namespace {
 
 struct CriticismArguments {
-  CriticismOptions options;
+  studies::CriticismOptions options;
   std::string one;                   ///< ROW:INDEX
   std::vector<std::string> without;  ///< names of rules
   bool json = false;
 };
 
-std::string criticism_text(const CriticismArguments& arguments, const Campaigns& campaigns) {
+std::string criticism_text(const CriticismArguments& arguments, const studies::Campaigns& campaigns) {
   TextTable figures({{"", Align::Left}, {"share (95 % interval), count", Align::Left}, {"goal", Align::Left}},
                     "Figures; s is the visible signal to noise |g~ a|");
-  for (const Figure& figure : figures_of(campaigns))
+  for (const studies::Figure& figure : studies::figures_of(campaigns))
     figures.add_row({figure.what, figure.share.text(), figure.goal});
   TextTable detections(
       {{"effect", Align::Left}, {"campaigns"}, {"ratio"}, {"95 % interval"}},
       "Amplitude found in 80 % of campaigns over the stated detectable one (goal 0.9 to 1.1)");
-  for (const Detection& detection : detections_of(campaigns)) {
+  for (const studies::Detection& detection : studies::detections_of(campaigns)) {
     detections.add_row({detection.effect, count_number(detection.campaigns), fixed_number(detection.ratio, 3),
                         fixed_number(detection.low, 3) + " to " + fixed_number(detection.high, 3)});
   }
   TextTable confusion({{"row | hidden", Align::Left}, {"said", Align::Left}, {"campaigns"}},
                       "What was hidden, and what was said");
-  for (const auto& [hidden, answers] : confusion_of(campaigns)) {
+  for (const auto& [hidden, answers] : studies::confusion_of(campaigns)) {
     for (const auto& [said, count] : answers) confusion.add_row({hidden, said, count_number(count)});
   }
-  const CriticismOptions& options = arguments.options;
+  const studies::CriticismOptions& options = arguments.options;
   return fmt::format(
       "model criticism, {} campaigns a row (nothing hidden: a kind of noise) of about {} readings, seeds "
       "from "
@@ -55,10 +55,11 @@ std::string criticism_text(const CriticismArguments& arguments, const Campaigns&
       figures.text(), detections.text(), detections.empty() ? "" : "\n", confusion.text());
 }
 
-nlohmann::ordered_json criticism_json(const CriticismArguments& arguments, const Campaigns& campaigns) {
+nlohmann::ordered_json criticism_json(const CriticismArguments& arguments,
+                                      const studies::Campaigns& campaigns) {
   nlohmann::ordered_json json = {
       {"study", "criticism"}, {"seed", arguments.options.seed}, {"readings", arguments.options.readings}};
-  for (const Figure& figure : figures_of(campaigns)) {
+  for (const studies::Figure& figure : studies::figures_of(campaigns)) {
     const auto [low, high] = figure.share.interval();
     json["figures"].push_back({{"figure", figure.what},
                                {"count", figure.share.count},
@@ -68,17 +69,17 @@ nlohmann::ordered_json criticism_json(const CriticismArguments& arguments, const
                                {"high95", high},
                                {"goal", figure.goal}});
   }
-  for (const Detection& detection : detections_of(campaigns)) {
+  for (const studies::Detection& detection : studies::detections_of(campaigns)) {
     json["detection"].push_back({{"effect", detection.effect},
                                  {"campaigns", detection.campaigns},
                                  {"ratio", detection.ratio},
                                  {"low95", detection.low},
                                  {"high95", detection.high}});
   }
-  json["confusion"] = confusion_of(campaigns);
-  for (const CampaignRecord& record : campaigns) {
+  json["confusion"] = studies::confusion_of(campaigns);
+  for (const studies::CampaignRecord& record : campaigns) {
     nlohmann::json entry = record;
-    entry["outcome"] = to_string(outcome_of(record));
+    entry["outcome"] = studies::to_string(studies::outcome_of(record));
     json["campaigns"].push_back(nlohmann::ordered_json(entry));
   }
   return json;
@@ -86,18 +87,18 @@ nlohmann::ordered_json criticism_json(const CriticismArguments& arguments, const
 
 /// One campaign as files, for a closer look.
 int write_one(const CriticismArguments& arguments) {
-  const CriticismOptions& options = arguments.options;
+  const studies::CriticismOptions& options = arguments.options;
   const std::size_t colon = arguments.one.find(':');
   const std::string row = arguments.one.substr(0, colon), number = arguments.one.substr(colon + 1);
   int index = -1;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
   const bool is_number = error == std::errc() && end == number.data() + number.size() && index >= 0;
   if (colon == std::string::npos || !is_number ||
-      std::ranges::find(criticism_rows(), row) == criticism_rows().end()) {
+      std::ranges::find(studies::criticism_rows(), row) == studies::criticism_rows().end()) {
     throw InputError({"--one " + arguments.one, 0}, "it is no row and index", "write listed:11");
   }
   if (options.output.empty()) throw InputError({"--one", 0}, "it needs a folder", "add -o FOLDER");
-  const auto study = study_of_campaign(row, index, options.seed, options.readings);
+  const auto study = studies::study_of_campaign(row, index, options.seed, options.readings);
   if (!study) {
     throw InputError({"--one " + arguments.one, 0}, "no effect drawn is visible in this layout",
                      "choose another index");
@@ -112,14 +113,14 @@ int write_one(const CriticismArguments& arguments) {
 
 int run_criticism_study(CriticismArguments arguments) {
   if (!arguments.one.empty()) return write_one(arguments);
-  CriticismOptions& options = arguments.options;
+  studies::CriticismOptions& options = arguments.options;
   complete_rows(options);
   for (const std::string& name : arguments.without) {
     if (const auto rule = search_rule_of(name)) options.without.insert(*rule);
   }
   ProgressBar bar("criticism");
   options.progress = counted_on(bar, "campaigns");
-  const Campaigns campaigns = criticism(options);
+  const studies::Campaigns campaigns = studies::criticism(options);
   bar.finish();
   return print_outcome(
       arguments.json, [&] { return criticism_json(arguments, campaigns); },
@@ -128,7 +129,7 @@ int run_criticism_study(CriticismArguments arguments) {
 
 std::function<int()> define_criticism_study(CLI::App& app) {
   auto arguments = std::make_shared<CriticismArguments>();
-  CriticismOptions& options = arguments->options;
+  studies::CriticismOptions& options = arguments->options;
   add_campaign_options(app, options, "campaigns.jsonl");
   app.add_option("--one", arguments->one,
                  "ROW:INDEX: write this campaign to the output folder, and what is hidden in it, and stop");

@@ -24,8 +24,8 @@ std::string described_rules() {
   return fmt::format("rules of the search: {}", fmt::join(described, ", "));
 }
 
-void add_campaign_options(CLI::App& app, CriticisedCampaigns& campaigns, const std::string& file) {
-  const std::vector<std::string> rows(criticism_rows().begin(), criticism_rows().end());
+void add_campaign_options(CLI::App& app, studies::CriticisedCampaigns& campaigns, const std::string& file) {
+  const std::vector<std::string> rows(studies::criticism_rows().begin(), studies::criticism_rows().end());
   app.add_option("--rows", campaigns.rows, fmt::format("{}; default: all", fmt::join(rows, ", ")))
       ->delimiter(',')
       ->check(CLI::IsMember(rows));
@@ -39,8 +39,9 @@ void add_campaign_options(CLI::App& app, CriticisedCampaigns& campaigns, const s
   add_archive_options(app, campaigns.output, campaigns.resume, file);
 }
 
-void complete_rows(CriticisedCampaigns& campaigns) {
-  if (campaigns.rows.empty()) campaigns.rows.assign(criticism_rows().begin(), criticism_rows().end());
+void complete_rows(studies::CriticisedCampaigns& campaigns) {
+  if (campaigns.rows.empty())
+    campaigns.rows.assign(studies::criticism_rows().begin(), studies::criticism_rows().end());
 }
 
 }  // namespace volcal::cli

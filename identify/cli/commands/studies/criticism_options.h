@@ -15,8 +15,8 @@ std::vector<std::string> names_of_rules();
 std::string described_rules();
 
 /// --rows, -n, --seed, --readings, -o and --resume; `file`: in which the folder keeps campaigns.
-void add_campaign_options(CLI::App& app, CriticisedCampaigns& campaigns, const std::string& file);
+void add_campaign_options(CLI::App& app, studies::CriticisedCampaigns& campaigns, const std::string& file);
 /// All rows where none was asked for.
-void complete_rows(CriticisedCampaigns& campaigns);
+void complete_rows(studies::CriticisedCampaigns& campaigns);
 
 }  // namespace volcal::cli

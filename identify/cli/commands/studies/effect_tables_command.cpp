@@ -23,23 +23,23 @@ constexpr double kOfIdeal = 1.05;           // times the ideal of the format
 constexpr double kVolumetricGoal = 1.0e-6;  // m, with a format that holds every error
 
 struct EffectTablesArguments {
-  EffectTablesOptions options;
+  studies::EffectTablesOptions options;
   bool json = false;
 };
 
-bool is_worse_than_rigid(const EffectTablesRow& row) { return row.extended > row.rigid + kNothing; }
+bool is_worse_than_rigid(const studies::EffectTablesRow& row) { return row.extended > row.rigid + kNothing; }
 
-bool misses_ideal(const EffectTablesRow& row) {
+bool misses_ideal(const studies::EffectTablesRow& row) {
   if (row.volumetric) return row.extended > kVolumetricGoal;
   const double ideal = std::hypot(row.ideal, row.uncertainty);
   return row.extended > std::max(kOfIdeal * ideal, ideal + kNothing);
 }
 
-bool is_printed_wrong(const EffectTablesRow& row) {
+bool is_printed_wrong(const studies::EffectTablesRow& row) {
   return std::abs(row.printed - row.extended) > std::max(kAgreement * row.extended, kNothing);
 }
 
-std::string verdict_of(const EffectTablesRow& row) {
+std::string verdict_of(const studies::EffectTablesRow& row) {
   std::string text;
   const auto add = [&text](bool holds, const char* words) {
     if (holds) text += (text.empty() ? "" : ", ") + std::string(words);
@@ -51,12 +51,12 @@ std::string verdict_of(const EffectTablesRow& row) {
 }
 
 template <class Test>
-int count_rows(const std::vector<EffectTablesRow>& rows, Test test) {
+int count_rows(const std::vector<studies::EffectTablesRow>& rows, Test test) {
   return static_cast<int>(std::ranges::count_if(rows, test));
 }
 
 std::string effect_rows_text(const EffectTablesArguments& arguments,
-                             const std::vector<EffectTablesRow>& rows) {
+                             const std::vector<studies::EffectTablesRow>& rows) {
   TextTable table({{"structure", Align::Left},
                    {"effect", Align::Left},
                    {"format", Align::Left},
@@ -69,7 +69,7 @@ std::string effect_rows_text(const EffectTablesArguments& arguments,
                    {"", Align::Left}},
                   "Volumetric error of the exact machine that applies the tables");
   std::string place;
-  for (const EffectTablesRow& row : rows) {
+  for (const studies::EffectTablesRow& row : rows) {
     const bool same = place == row.structure + row.effect;
     table.add_row({same ? "" : row.structure, same ? "" : row.effect, row.format,
                    fixed_number(row.before / kMicro, 2), fixed_number(row.rigid / kMicro, 2),
@@ -88,11 +88,11 @@ std::string effect_rows_text(const EffectTablesArguments& arguments,
 }
 
 nlohmann::ordered_json effect_rows_json(const EffectTablesArguments& arguments,
-                                        const std::vector<EffectTablesRow>& rows) {
+                                        const std::vector<studies::EffectTablesRow>& rows) {
   nlohmann::ordered_json json = {{"study", "effect-tables"},
                                  {"seed", arguments.options.seed},
                                  {"rows", nlohmann::ordered_json::array()}};
-  for (const EffectTablesRow& row : rows) {
+  for (const studies::EffectTablesRow& row : rows) {
     json["rows"].push_back({{"structure", row.structure},
                             {"effect", row.effect},
                             {"format", row.format},
@@ -113,7 +113,7 @@ nlohmann::ordered_json effect_rows_json(const EffectTablesArguments& arguments,
 int run_effect_tables(EffectTablesArguments arguments) {
   ProgressBar bar("effect-tables");
   arguments.options.progress = counted_on(bar, "machines");
-  const std::vector<EffectTablesRow> rows = effect_tables_study(arguments.options);
+  const std::vector<studies::EffectTablesRow> rows = studies::effect_tables_study(arguments.options);
   bar.finish();
   return print_outcome(
       arguments.json, [&] { return effect_rows_json(arguments, rows); },
@@ -122,7 +122,7 @@ int run_effect_tables(EffectTablesArguments arguments) {
 
 std::function<int()> define_effect_tables(CLI::App& app) {
   auto arguments = std::make_shared<EffectTablesArguments>();
-  EffectTablesOptions& options = arguments->options;
+  studies::EffectTablesOptions& options = arguments->options;
   app.add_option("-n,--structures", options.structures, "how many of the four reference machines")
       ->check(CLI::Range(1, 4))
       ->capture_default_str();
@@ -133,7 +133,7 @@ std::function<int()> define_effect_tables(CLI::App& app) {
       ->check(positive())
       ->capture_default_str();
   app.add_option("--case", options.cases, "effects; default: all")
-      ->check(CLI::IsMember(effect_table_cases()));
+      ->check(CLI::IsMember(studies::effect_table_cases()));
   app.add_option("-f,--format", options.formats, "table formats; default: all")
       ->check(CLI::IsMember(table_format_names()));
   add_run_options(app, options.threads, arguments->json);

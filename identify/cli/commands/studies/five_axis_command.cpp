@@ -21,12 +21,12 @@ namespace volcal::cli {
 namespace {
 
 struct FiveAxisArguments {
-  FiveAxisStudyOptions options;
+  studies::FiveAxisStudyOptions options;
   bool json = false;
 };
 
-using FiveAxisCampaigns = std::vector<FiveAxisCampaign>;
-using FiveAxisFigure = double FiveAxisCampaign::*;
+using FiveAxisCampaigns = std::vector<studies::FiveAxisCampaign>;
+using FiveAxisFigure = double studies::FiveAxisCampaign::*;
 
 /// Mean and its 95 % interval, half of it.
 struct MeanInterval {
@@ -37,15 +37,16 @@ struct MeanInterval {
 MeanInterval interval_of(const FiveAxisCampaigns& campaigns, FiveAxisFigure figure) {
   const auto n = static_cast<double>(campaigns.size());
   double mean = 0.0, squares = 0.0;
-  for (const FiveAxisCampaign& each : campaigns) mean += each.*figure / n;
-  for (const FiveAxisCampaign& each : campaigns) squares += (each.*figure - mean) * (each.*figure - mean);
+  for (const studies::FiveAxisCampaign& each : campaigns) mean += each.*figure / n;
+  for (const studies::FiveAxisCampaign& each : campaigns)
+    squares += (each.*figure - mean) * (each.*figure - mean);
   return {mean, n > 1.0 ? kCoverageFactor * std::sqrt(squares / (n - 1.0) / n) : std::nan("")};
 }
 
 FiveAxisCampaigns of_structure(const FiveAxisCampaigns& campaigns, const std::string& structure) {
   FiveAxisCampaigns own;
   std::ranges::copy_if(campaigns, std::back_inserter(own),
-                       [&](const FiveAxisCampaign& each) { return each.structure == structure; });
+                       [&](const studies::FiveAxisCampaign& each) { return each.structure == structure; });
   return own;
 }
 
@@ -54,7 +55,7 @@ std::string cell(const FiveAxisCampaigns& campaigns, FiveAxisFigure figure, doub
   return fmt::format("{:.{}f} +- {:.{}f}", interval.mean / unit, decimals, interval.half / unit, decimals);
 }
 
-std::string five_axis_text(const FiveAxisStudyOptions& options, const FiveAxisCampaigns& campaigns) {
+std::string five_axis_text(const studies::FiveAxisStudyOptions& options, const FiveAxisCampaigns& campaigns) {
   constexpr double kPercent = 0.01;
   TextTable exact({{"structure", Align::Left},
                    {"campaigns"},
@@ -74,18 +75,20 @@ std::string five_axis_text(const FiveAxisStudyOptions& options, const FiveAxisCa
   const auto add = [&](const std::string& name, const FiveAxisCampaigns& own) {
     if (own.empty()) return;
     exact.add_row({name, count_number(static_cast<long long>(own.size())),
-                   cell(own, &FiveAxisCampaign::before, kMicro, 2),
-                   cell(own, &FiveAxisCampaign::after, kMicro, 3), cell(own, &FiveAxisCampaign::chi2, 1.0, 3),
-                   cell(own, &FiveAxisCampaign::coverage, kPercent, 1)});
-    const auto worse = std::ranges::count_if(
-        own, [](const FiveAxisCampaign& each) { return each.one_sphere_singly > each.before_beside; });
-    beside.add_row({name, cell(own, &FiveAxisCampaign::before_beside, kMicro, 2),
-                    cell(own, &FiveAxisCampaign::after_beside, kMicro, 3),
-                    cell(own, &FiveAxisCampaign::locations_only, kMicro, 2),
-                    cell(own, &FiveAxisCampaign::one_sphere_singly, kMicro, 2), count_number(worse),
-                    cell(own, &FiveAxisCampaign::coverage_beside, kPercent, 1)});
+                   cell(own, &studies::FiveAxisCampaign::before, kMicro, 2),
+                   cell(own, &studies::FiveAxisCampaign::after, kMicro, 3),
+                   cell(own, &studies::FiveAxisCampaign::chi2, 1.0, 3),
+                   cell(own, &studies::FiveAxisCampaign::coverage, kPercent, 1)});
+    const auto worse = std::ranges::count_if(own, [](const studies::FiveAxisCampaign& each) {
+      return each.one_sphere_singly > each.before_beside;
+    });
+    beside.add_row({name, cell(own, &studies::FiveAxisCampaign::before_beside, kMicro, 2),
+                    cell(own, &studies::FiveAxisCampaign::after_beside, kMicro, 3),
+                    cell(own, &studies::FiveAxisCampaign::locations_only, kMicro, 2),
+                    cell(own, &studies::FiveAxisCampaign::one_sphere_singly, kMicro, 2), count_number(worse),
+                    cell(own, &studies::FiveAxisCampaign::coverage_beside, kPercent, 1)});
   };
-  for (const std::string& structure : five_axis_structures())
+  for (const std::string& structure : studies::five_axis_structures())
     add(structure, of_structure(campaigns, structure));
   add("all", campaigns);
   return fmt::format(
@@ -98,7 +101,7 @@ std::string five_axis_text(const FiveAxisStudyOptions& options, const FiveAxisCa
 
 nlohmann::ordered_json five_axis_json(const FiveAxisCampaigns& campaigns) {
   nlohmann::ordered_json json = {{"study", "five-axis"}, {"campaigns", nlohmann::ordered_json::array()}};
-  for (const FiveAxisCampaign& each : campaigns) {
+  for (const studies::FiveAxisCampaign& each : campaigns) {
     json["campaigns"].push_back({{"structure", each.structure},
                                  {"seed", each.seed},
                                  {"before_um", each.before / kMicro},
@@ -117,7 +120,7 @@ nlohmann::ordered_json five_axis_json(const FiveAxisCampaigns& campaigns) {
 int run_five_axis_study(FiveAxisArguments arguments) {
   ProgressBar bar("five-axis");
   arguments.options.progress = counted_on(bar, "campaigns");
-  const FiveAxisCampaigns campaigns = five_axis_study(arguments.options);
+  const FiveAxisCampaigns campaigns = studies::five_axis_study(arguments.options);
   bar.finish();
   return print_outcome(
       arguments.json, [&] { return five_axis_json(campaigns); },
@@ -126,7 +129,7 @@ int run_five_axis_study(FiveAxisArguments arguments) {
 
 std::function<int()> define_five_axis_study(CLI::App& app) {
   auto arguments = std::make_shared<FiveAxisArguments>();
-  FiveAxisStudyOptions& options = arguments->options;
+  studies::FiveAxisStudyOptions& options = arguments->options;
   app.add_option("-n,--campaigns", options.campaigns, "of the four structures in turn")
       ->check(positive())
       ->capture_default_str();

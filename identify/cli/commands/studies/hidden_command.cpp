@@ -20,14 +20,14 @@ constexpr double kRemoved = 0.9;       // share of the systematic error
 constexpr std::size_t kMostWords = 3;  // of what is offered
 
 struct HiddenArguments {
-  HiddenDatasetOptions options;
+  studies::HiddenDatasetOptions options;
   bool json = false;
 };
 
-using HiddenRows = std::vector<HiddenDatasetRow>;
+using HiddenRows = std::vector<studies::HiddenDatasetRow>;
 
-bool is_strong(const HiddenDatasetRow& row) { return !row.hidden.empty() && row.signal >= kStrong; }
-bool is_removed(const HiddenDatasetRow& row) { return row.share >= kRemoved; }
+bool is_strong(const studies::HiddenDatasetRow& row) { return !row.hidden.empty() && row.signal >= kStrong; }
+bool is_removed(const studies::HiddenDatasetRow& row) { return row.share >= kRemoved; }
 
 struct StrongRows {
   std::size_t all = 0;
@@ -36,7 +36,7 @@ struct StrongRows {
 
 StrongRows count_strong(const HiddenRows& rows) {
   StrongRows count;
-  for (const HiddenDatasetRow& row : rows) {
+  for (const studies::HiddenDatasetRow& row : rows) {
     if (!is_strong(row)) continue;
     ++count.all;
     count.removed += is_removed(row) ? 1 : 0;
@@ -56,9 +56,10 @@ std::string listed(const std::vector<std::string>& labels) {
 std::vector<std::string> rules_with_counts(const HiddenRows& rows) {
   std::vector<std::string> counts;
   for (const SearchRule rule : search_rules()) {
-    const auto count = std::ranges::count_if(rows, [name = name_of(rule)](const HiddenDatasetRow& row) {
-      return std::ranges::find(row.decided, name) != row.decided.end();
-    });
+    const auto count =
+        std::ranges::count_if(rows, [name = name_of(rule)](const studies::HiddenDatasetRow& row) {
+          return std::ranges::find(row.decided, name) != row.decided.end();
+        });
     counts.push_back(fmt::format("{} {}", name_of(rule), count));
   }
   return counts;
@@ -75,7 +76,7 @@ std::string hidden_rows_text(const HiddenRows& rows) {
                    {"removed"},
                    {"the offered model adds", Align::Left}},
                   "Error of predictions at unseen positions without noise, root mean square");
-  for (const HiddenDatasetRow& row : rows) {
+  for (const studies::HiddenDatasetRow& row : rows) {
     const std::string share = std::isnan(row.share) ? "-" : fixed_number(row.share, 2);
     table.add_row({row.name, row.hidden.empty() ? "nothing" : fmt::format("{}", fmt::join(row.hidden, ", ")),
                    fixed_number(row.signal, 1), row.verdict, fixed_number(row.given_um, 3),
@@ -91,7 +92,7 @@ std::string hidden_rows_text(const HiddenRows& rows) {
 
 nlohmann::ordered_json hidden_rows_json(const HiddenRows& rows) {
   nlohmann::ordered_json json = {{"study", "hidden"}, {"campaigns", nlohmann::ordered_json::array()}};
-  for (const HiddenDatasetRow& row : rows) {
+  for (const studies::HiddenDatasetRow& row : rows) {
     nlohmann::ordered_json share = nullptr;
     if (!std::isnan(row.share)) share = row.share;
     json["campaigns"].push_back({{"campaign", row.name},
@@ -113,7 +114,7 @@ nlohmann::ordered_json hidden_rows_json(const HiddenRows& rows) {
 int run_hidden(HiddenArguments arguments) {
   ProgressBar bar("hidden");
   arguments.options.progress = counted_on(bar, "campaigns");
-  const HiddenRows rows = hidden_datasets(arguments.options);
+  const HiddenRows rows = studies::hidden_datasets(arguments.options);
   bar.finish();
   return print_outcome(
       arguments.json, [&] { return hidden_rows_json(rows); }, [&] { return hidden_rows_text(rows); });
@@ -121,7 +122,7 @@ int run_hidden(HiddenArguments arguments) {
 
 std::function<int()> define_hidden(CLI::App& app) {
   auto arguments = std::make_shared<HiddenArguments>();
-  HiddenDatasetOptions& options = arguments->options;
+  studies::HiddenDatasetOptions& options = arguments->options;
   app.add_option("FOLDER", options.folder, "of study files (volcal simulate) with [[hidden]] effects")
       ->required();
   app.add_option("--campaign", options.names, "names of study files, without .toml; default: all")

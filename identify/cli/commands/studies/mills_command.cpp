@@ -20,25 +20,26 @@ namespace volcal::cli {
 namespace {
 
 struct MillArguments {
-  MillStudyOptions options;
+  studies::MillStudyOptions options;
   std::vector<std::string> without;  ///< names of rules
   bool json = false;
 };
 
-using Mills = std::vector<DiagnosedMill>;
-using MillList = std::vector<std::string> DiagnosedMill::*;
+using Mills = std::vector<studies::DiagnosedMill>;
+using MillList = std::vector<std::string> studies::DiagnosedMill::*;
 
 std::size_t total(const Mills& mills, MillList list) {
   std::size_t count = 0;
-  for (const DiagnosedMill& mill : mills) count += (mill.*list).size();
+  for (const studies::DiagnosedMill& mill : mills) count += (mill.*list).size();
   return count;
 }
 
 std::ptrdiff_t mills_with(const Mills& mills, MillList list) {
-  return std::ranges::count_if(mills, [list](const DiagnosedMill& mill) { return !(mill.*list).empty(); });
+  return std::ranges::count_if(mills,
+                               [list](const studies::DiagnosedMill& mill) { return !(mill.*list).empty(); });
 }
 
-std::string mills_text(const MillStudyOptions& options, const Mills& mills) {
+std::string mills_text(const studies::MillStudyOptions& options, const Mills& mills) {
   TextTable table({{"seed"},
                    {"errors"},
                    {"found"},
@@ -47,7 +48,7 @@ std::string mills_text(const MillStudyOptions& options, const Mills& mills) {
                    {"other error functions", Align::Left},
                    {"effects that are not there", Align::Left}},
                   "What diagnoses accept");
-  for (const DiagnosedMill& mill : mills) {
+  for (const studies::DiagnosedMill& mill : mills) {
     table.add_row({count_number(static_cast<long long>(mill.seed)),
                    count_number(static_cast<long long>(mill.hidden.size())),
                    count_number(static_cast<long long>(mill.found.size())), fixed_number(mill.given_um, 1),
@@ -60,15 +61,16 @@ std::string mills_text(const MillStudyOptions& options, const Mills& mills) {
       "the "
       "prediction at other poses\n\n{}\neffects that are not there: {}, in {} of {} mills\nerror functions "
       "that are not there: {}, in {}\nerrors found: {} of {}\n",
-      mills.size(), options.seed, table.text(), total(mills, &DiagnosedMill::wrong_effects),
-      mills_with(mills, &DiagnosedMill::wrong_effects), mills.size(),
-      total(mills, &DiagnosedMill::other_functions), mills_with(mills, &DiagnosedMill::other_functions),
-      total(mills, &DiagnosedMill::found), total(mills, &DiagnosedMill::hidden));
+      mills.size(), options.seed, table.text(), total(mills, &studies::DiagnosedMill::wrong_effects),
+      mills_with(mills, &studies::DiagnosedMill::wrong_effects), mills.size(),
+      total(mills, &studies::DiagnosedMill::other_functions),
+      mills_with(mills, &studies::DiagnosedMill::other_functions),
+      total(mills, &studies::DiagnosedMill::found), total(mills, &studies::DiagnosedMill::hidden));
 }
 
 nlohmann::ordered_json mills_json(const Mills& mills) {
   nlohmann::ordered_json json = {{"study", "mills"}, {"campaigns", nlohmann::ordered_json::array()}};
-  for (const DiagnosedMill& mill : mills) {
+  for (const studies::DiagnosedMill& mill : mills) {
     json["campaigns"].push_back({{"seed", mill.seed},
                                  {"hidden", mill.hidden},
                                  {"found", mill.found},
@@ -87,7 +89,7 @@ int run_mill_study(MillArguments arguments) {
   }
   ProgressBar bar("mills");
   arguments.options.progress = counted_on(bar, "campaigns");
-  const Mills mills = mill_study(arguments.options);
+  const Mills mills = studies::mill_study(arguments.options);
   bar.finish();
   return print_outcome(
       arguments.json, [&] { return mills_json(mills); },
@@ -96,7 +98,7 @@ int run_mill_study(MillArguments arguments) {
 
 std::function<int()> define_mill_study(CLI::App& app) {
   auto arguments = std::make_shared<MillArguments>();
-  MillStudyOptions& options = arguments->options;
+  studies::MillStudyOptions& options = arguments->options;
   app.add_option("-n,--campaigns", options.campaigns)->check(positive())->capture_default_str();
   app.add_option("--seed", options.seed, "of the first campaign, the others follow")
       ->check(not_negative())

@@ -16,11 +16,12 @@ namespace volcal::cli {
 namespace {
 
 struct PlanningStudyArguments {
-  PlanningStudyOptions options;
+  studies::PlanningStudyOptions options;
   bool json = false;
 };
 
-std::string planning_text(const PlanningStudyOptions& options, const std::vector<PlannedMachine>& machines) {
+std::string planning_text(const studies::PlanningStudyOptions& options,
+                          const std::vector<studies::PlannedMachine>& machines) {
   TextTable table(
       {{"structure", Align::Left},
        {"layout", Align::Left},
@@ -34,8 +35,8 @@ std::string planning_text(const PlanningStudyOptions& options, const std::vector
   const auto less = [](double plan, double textbook) {
     return fmt::format("-{:.1f} %", 100.0 * (1.0 - plan / textbook));
   };
-  for (const PlannedMachine& machine : machines) {
-    for (const LayoutFigures* each : {&machine.textbook, &machine.plan}) {
+  for (const studies::PlannedMachine& machine : machines) {
+    for (const studies::LayoutFigures* each : {&machine.textbook, &machine.plan}) {
       table.add_row({machine.structure, each->name, um(each->predicted_u), um(each->fitted_u),
                      um(each->montecarlo_u), um(each->true_error), count_number(each->invisible)});
     }
@@ -48,10 +49,10 @@ std::string planning_text(const PlanningStudyOptions& options, const std::vector
                      options.readings, options.seed, table.text());
 }
 
-nlohmann::ordered_json planning_json(const std::vector<PlannedMachine>& machines) {
+nlohmann::ordered_json planning_json(const std::vector<studies::PlannedMachine>& machines) {
   nlohmann::ordered_json json = {{"study", "planning"}};
-  for (const PlannedMachine& machine : machines) {
-    for (const LayoutFigures* each : {&machine.textbook, &machine.plan}) {
+  for (const studies::PlannedMachine& machine : machines) {
+    for (const studies::LayoutFigures* each : {&machine.textbook, &machine.plan}) {
       json["layouts"].push_back({{"structure", machine.structure},
                                  {"layout", each->name},
                                  {"predicted_u_um", each->predicted_u * kPerMicro},
@@ -67,7 +68,7 @@ nlohmann::ordered_json planning_json(const std::vector<PlannedMachine>& machines
 int run_planning_study(PlanningStudyArguments arguments) {
   ProgressBar bar("planning");
   arguments.options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
-  const std::vector<PlannedMachine> machines = planning_study(arguments.options);
+  const std::vector<studies::PlannedMachine> machines = studies::planning_study(arguments.options);
   bar.finish();
   return print_outcome(
       arguments.json, [&] { return planning_json(machines); },
@@ -76,7 +77,7 @@ int run_planning_study(PlanningStudyArguments arguments) {
 
 std::function<int()> define_planning_study(CLI::App& app) {
   auto arguments = std::make_shared<PlanningStudyArguments>();
-  PlanningStudyOptions& options = arguments->options;
+  studies::PlanningStudyOptions& options = arguments->options;
   app.add_option("-n,--campaigns", options.campaigns, "of each layout and machine")
       ->check(positive())
       ->capture_default_str();

@@ -17,11 +17,11 @@ namespace volcal::cli {
 namespace {
 
 struct PreviewsArguments {
-  PreviewsOptions options;
+  studies::PreviewsOptions options;
   bool json = false;
 };
 
-std::string previews_text(const std::vector<PreviewedCampaign>& campaigns) {
+std::string previews_text(const std::vector<studies::PreviewedCampaign>& campaigns) {
   TextTable table({{"campaign", Align::Left},
                    {"effect", Align::Left},
                    {"preview off by, of U95"},
@@ -29,9 +29,9 @@ std::string previews_text(const std::vector<PreviewedCampaign>& campaigns) {
                    {"said", Align::Left}},
                   "Previews or refits that did not hold");
   int failed = 0;
-  for (const PreviewedCampaign& campaign : campaigns) {
+  for (const studies::PreviewedCampaign& campaign : campaigns) {
     failed += campaign.failure.empty() ? 0 : 1;
-    for (const PreviewRecord& preview : campaign.previews) {
+    for (const studies::PreviewRecord& preview : campaign.previews) {
       if (std::max(preview.miss, preview.refit_miss) >= 0.25)
         table.add_row({campaign.campaign, preview.effect, fixed_number(preview.miss, 2),
                        fixed_number(preview.refit_miss, 2), preview.said ? "yes" : "no"});
@@ -41,27 +41,28 @@ std::string previews_text(const std::vector<PreviewedCampaign>& campaigns) {
       "linear previews of a session and refits against their full fits, {} campaigns ({} without any); "
       "intervals after Wilson\n\npreviews less than U95/4 from the full fit: {}\nrefits:  "
       "                                   {}\nof the other refits, said in words:        {}\n\n{}",
-      campaigns.size(), failed, previews_that_held(campaigns).text(), refits_that_held(campaigns).text(),
-      misses_said(campaigns).text(), table.empty() ? "" : table.text());
+      campaigns.size(), failed, studies::previews_that_held(campaigns).text(),
+      studies::refits_that_held(campaigns).text(), studies::misses_said(campaigns).text(),
+      table.empty() ? "" : table.text());
 }
 
-nlohmann::ordered_json share_json(const Share& share) {
+nlohmann::ordered_json share_json(const studies::Share& share) {
   const auto [low, high] = share.interval();
   return {
       {"count", share.count}, {"of", share.of}, {"share", share.value()}, {"low95", low}, {"high95", high}};
 }
 
 nlohmann::ordered_json previews_json(const PreviewsArguments& arguments,
-                                     const std::vector<PreviewedCampaign>& campaigns) {
+                                     const std::vector<studies::PreviewedCampaign>& campaigns) {
   nlohmann::ordered_json json = {{"study", "previews"},
                                  {"seed", arguments.options.seed},
                                  {"readings", arguments.options.readings},
-                                 {"held", share_json(previews_that_held(campaigns))},
-                                 {"refits_held", share_json(refits_that_held(campaigns))},
-                                 {"misses_said", share_json(misses_said(campaigns))}};
-  for (const PreviewedCampaign& campaign : campaigns) {
+                                 {"held", share_json(studies::previews_that_held(campaigns))},
+                                 {"refits_held", share_json(studies::refits_that_held(campaigns))},
+                                 {"misses_said", share_json(studies::misses_said(campaigns))}};
+  for (const studies::PreviewedCampaign& campaign : campaigns) {
     nlohmann::ordered_json entry = {{"campaign", campaign.campaign}, {"failure", campaign.failure}};
-    for (const PreviewRecord& preview : campaign.previews)
+    for (const studies::PreviewRecord& preview : campaign.previews)
       entry["previews"].push_back({{"effect", preview.effect},
                                    {"miss", preview.miss},
                                    {"refit_miss", preview.refit_miss},
@@ -74,7 +75,7 @@ nlohmann::ordered_json previews_json(const PreviewsArguments& arguments,
 int run_previews_study(PreviewsArguments arguments) {
   ProgressBar bar("previews");
   arguments.options.progress = counted_on(bar, "campaigns");
-  const std::vector<PreviewedCampaign> campaigns = previews(arguments.options);
+  const std::vector<studies::PreviewedCampaign> campaigns = studies::previews(arguments.options);
   bar.finish();
   return print_outcome(
       arguments.json, [&] { return previews_json(arguments, campaigns); },
@@ -83,8 +84,8 @@ int run_previews_study(PreviewsArguments arguments) {
 
 std::function<int()> define_previews_study(CLI::App& app) {
   auto arguments = std::make_shared<PreviewsArguments>();
-  PreviewsOptions& options = arguments->options;
-  const std::vector<std::string> rows(criticism_rows().begin(), criticism_rows().end());
+  studies::PreviewsOptions& options = arguments->options;
+  const std::vector<std::string> rows(studies::criticism_rows().begin(), studies::criticism_rows().end());
   app.add_option("--rows", options.rows, "null, listed, unlisted, pairs, left-out, partial, mdb")
       ->delimiter(',')
       ->check(CLI::IsMember(rows))

@@ -13,11 +13,11 @@ namespace volcal::cli {
 namespace {
 
 struct RulesArguments {
-  RuleStudyOptions options;
+  studies::RuleStudyOptions options;
   bool json = false;
 };
 
-std::string rules_text(const RulesArguments& arguments, const std::vector<RuleCampaign>& campaigns) {
+std::string rules_text(const RulesArguments& arguments, const std::vector<studies::RuleCampaign>& campaigns) {
   TextTable table({{"without", Align::Left},
                    {"decided in"},
                    {"reported otherwise"},
@@ -27,7 +27,7 @@ std::string rules_text(const RulesArguments& arguments, const std::vector<RuleCa
                    {"removed >= 0.9"},
                    {"processor [s]"}},
                   "Every rule of the search left out in turn");
-  for (const RuleRow& row : rows_of(campaigns, arguments.options.rules)) {
+  for (const studies::RuleRow& row : studies::rows_of(campaigns, arguments.options.rules)) {
     const bool all = row.rule.empty();
     table.add_row({all ? "none" : row.rule, all ? "-" : count_number(row.decided),
                    all ? "-" : count_number(row.changed), count_number(row.counts.right),
@@ -41,13 +41,13 @@ std::string rules_text(const RulesArguments& arguments, const std::vector<RuleCa
 }
 
 nlohmann::ordered_json rules_json(const RulesArguments& arguments,
-                                  const std::vector<RuleCampaign>& campaigns) {
+                                  const std::vector<studies::RuleCampaign>& campaigns) {
   nlohmann::ordered_json json = {{"study", "rules"},
                                  {"seed", arguments.options.seed},
                                  {"readings", arguments.options.readings},
                                  {"campaigns", campaigns.size()},
                                  {"rows", nlohmann::ordered_json::array()}};
-  for (const RuleRow& row : rows_of(campaigns, arguments.options.rules)) {
+  for (const studies::RuleRow& row : studies::rows_of(campaigns, arguments.options.rules)) {
     json["rows"].push_back({{"without", row.rule},
                             {"decided", row.decided},
                             {"changed", row.changed},
@@ -61,12 +61,12 @@ nlohmann::ordered_json rules_json(const RulesArguments& arguments,
 }
 
 int run_rules(RulesArguments arguments) {
-  RuleStudyOptions& options = arguments.options;
+  studies::RuleStudyOptions& options = arguments.options;
   complete_rows(options);
   if (options.rules.empty()) options.rules = names_of_rules();
   ProgressBar bar("rules");
   options.progress = counted_on(bar, "campaigns");
-  const std::vector<RuleCampaign> campaigns = rule_study(options);
+  const std::vector<studies::RuleCampaign> campaigns = studies::rule_study(options);
   bar.finish();
   return print_outcome(
       arguments.json, [&] { return rules_json(arguments, campaigns); },
@@ -75,7 +75,7 @@ int run_rules(RulesArguments arguments) {
 
 std::function<int()> define_rules(CLI::App& app) {
   auto arguments = std::make_shared<RulesArguments>();
-  RuleStudyOptions& options = arguments->options;
+  studies::RuleStudyOptions& options = arguments->options;
   options.campaigns = 5;
   add_campaign_options(app, options, "rules.jsonl");
   app.add_option("--without", options.rules, described_rules() + "; default: each in turn")

@@ -22,7 +22,7 @@ namespace volcal::cli {
 #define VOLCAL_ADDRESS_OF_STUDY(name) &(name)(),
 VOLCAL_STUDIES(VOLCAL_DECLARE_STUDY)
 
-std::span<const Command* const> studies() {
+std::span<const Command* const> study_commands() {
   static const auto kStudies = std::to_array<const Command*>({VOLCAL_STUDIES(VOLCAL_ADDRESS_OF_STUDY)});
   return kStudies;
 }

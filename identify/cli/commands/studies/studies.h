@@ -8,6 +8,6 @@
 
 namespace volcal::cli {
 
-std::span<const Command* const> studies();
+std::span<const Command* const> study_commands();
 
 }  // namespace volcal::cli

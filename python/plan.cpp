@@ -28,7 +28,7 @@ std::vector<std::size_t> tools_named(const Machine& machine, const std::vector<s
   std::vector<std::size_t> tools;
   for (const std::string& name : names) {
     const auto tool = machine.tool_index(name);
-    if (!tool) throw InputError({}, "the machine has no tool " + name, "choose of Machine.tools");
+    if (!tool) throw InputError({}, "the machine has no tool " + name, "choose one of Machine.tools");
     tools.push_back(*tool);
   }
   return tools;

@@ -168,9 +168,9 @@ CampaignPlan extend_campaign(const PlanSettings& settings) {
     if (found.options.empty()) break;
     if (plan.options.empty()) plan.options = found.options;
     plan.settings.machine = found.machine;
-    plan.settings.imagined_tools = found.imagined_tools;
+    plan.settings.hypothetical_tools = found.hypothetical_tools;
     adding.machine = found.machine;
-    adding.imagined_tools = found.imagined_tools;
+    adding.hypothetical_tools = found.hypothetical_tools;
     reached.machine = found.machine;
     PlanLayout added = with_chosen_positions(adding, found.best);
     now = expected_campaign("plan", campaign_of(added, adding), plan.settings, false);

@@ -70,7 +70,7 @@ class OptionSearch {
       : settings_(std::move(settings)), now_(now) {
     settings_.progress = nullptr;
     own_machine_ = settings_.machine;
-    own_imagined_ = settings_.imagined_tools;
+    own_hypothetical_ = settings_.hypothetical_tools;
     positions_ = static_cast<std::size_t>(settings_.budget.readings.value_or(kUsualReadings)) / 2;
     existing_ = *settings_.existing;
     if (!now.invisible().empty()) {
@@ -108,7 +108,7 @@ class OptionSearch {
     }
     for (const Tool& tool : imagined) {
       settings_.machine.tools.push_back(tool);
-      ++settings_.imagined_tools;
+      ++settings_.hypothetical_tools;
     }
   }
 
@@ -268,7 +268,7 @@ class OptionSearch {
   SetupOptions summary(const std::vector<Judged>& judged) const {
     SetupOptions out;
     out.machine = own_machine_;
-    out.imagined_tools = own_imagined_;
+    out.hypothetical_tools = own_hypothetical_;
     if (judged.empty()) return out;
     for (const Judged& each : judged) {
       if (out.options.size() < kMostOptions) out.options.push_back(each.option);
@@ -276,7 +276,7 @@ class OptionSearch {
     out.best = judged.front().layout;
     if (judged.front().option.new_tool) {
       out.machine = settings_.machine;
-      out.imagined_tools = settings_.imagined_tools;
+      out.hypothetical_tools = settings_.hypothetical_tools;
     }
     return out;
   }
@@ -284,7 +284,7 @@ class OptionSearch {
   PlanSettings settings_;
   const ExpectedCampaign& now_;
   Machine own_machine_;
-  std::size_t own_imagined_ = 0;
+  std::size_t own_hypothetical_ = 0;
   Campaign existing_;
   std::size_t positions_ = 0;
 };

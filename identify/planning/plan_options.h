@@ -9,10 +9,10 @@
 namespace volcal {
 
 struct SetupOptions {
-  std::vector<PlanOption> options;  ///< best first
-  PlanLayout best;                  ///< one run on an even grid, or all that are taken whole
-  Machine machine;                  ///< with the tool that the best needs
-  std::size_t imagined_tools = 0;   ///< of it
+  std::vector<PlanOption> options;     ///< best first
+  PlanLayout best;                     ///< one run on an even grid, or all that are taken whole
+  Machine machine;                     ///< with the tool that the best needs
+  std::size_t hypothetical_tools = 0;  ///< of it
 };
 
 /// `settings.existing` is what there is, `now` what it tells. An option is better the fewer errors it leaves

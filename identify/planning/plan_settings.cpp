@@ -58,14 +58,14 @@ std::optional<Finding> hold_effects_unseen(const Campaign& planned, ModelSpec& m
 
 std::vector<std::size_t> tools_of(const PlanSettings& settings) {
   if (!settings.budget.tools.empty()) return settings.budget.tools;
-  std::vector<std::size_t> all(settings.machine.tools.size() - settings.imagined_tools);
+  std::vector<std::size_t> all(settings.machine.tools.size() - settings.hypothetical_tools);
   std::iota(all.begin(), all.end(), std::size_t{0});
   return all;
 }
 
 std::vector<Tool> own_tools(const PlanSettings& settings) {
   std::vector<Tool> tools = settings.machine.tools;
-  tools.resize(tools.size() - settings.imagined_tools);
+  tools.resize(tools.size() - settings.hypothetical_tools);
   return tools;
 }
 

@@ -81,7 +81,7 @@ std::string usual_plan_instrument();
 
 struct PlanSettings {
   Machine machine;
-  std::size_t imagined_tools = 0;  ///< the last of the machine's: not there yet, no part of its volume
+  std::size_t hypothetical_tools = 0;  ///< the last of the machine's: not there yet, no part of its volume
   ModelSpec model;
   /// Errors of linear axes count as identified by a campaign of their own (with_known_linear_axes()).
   bool linear_axes_known = false;

@@ -40,7 +40,7 @@ const PlanInstrument& plan_instrument_of(const PlanSettings& settings) {
   std::string known;
   for (const PlanInstrument* each : plan_instruments()) known += (known.empty() ? "" : ", ") + each->name();
   throw InputError({}, "no campaign can be planned for \"" + settings.instrument + "\"",
-                   "choose of " + known);
+                   "choose one of " + known);
 }
 
 }  // namespace volcal

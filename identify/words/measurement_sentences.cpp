@@ -36,21 +36,22 @@ std::string factor_in_words(double gain) {
 }
 
 std::string none_separates(const Finding& finding) {
-  const std::string nothing = "Nothing on the menu tells " + both_effects(finding);
-  if (!finding.has("difference")) return nothing + ": they predict nearly the same readings.";
-  return nothing + fmt::format(
-                       " in a way that is worth it, and it does not matter: in the measured volume "
-                       "predictions differ by at most {:.2g} um (U {:.2g} um).",
-                       finding.number("difference").in_unit(), finding.number("U").in_unit());
+  const std::string none = "No candidate measurement separates " + both_effects(finding);
+  if (!finding.has("difference")) return none + ": they predict nearly the same readings.";
+  return none + fmt::format(
+                    " well enough to be worth its time. This does not matter: in the measured volume their "
+                    "predictions differ by at most {:.2g} um (U {:.2g} um).",
+                    finding.number("difference").in_unit(), finding.number("U").in_unit());
 }
 
 std::string separates(const Finding& finding) {
   const double gain = finding.number("gain").si, plain = finding.number("plain_gain").si;
-  std::string text = what_is_measured(finding) + "tells " + both_effects(finding);
-  text += std::isinf(gain) ? ", which the present readings cannot at all"
+  std::string text = what_is_measured(finding) + "separates " + both_effects(finding);
+  text += std::isinf(gain) ? ", which the present readings cannot do"
                            : " " + factor_in_words(gain) + " times better";
-  return text + fmt::format("; as many further plain readings: {}.",
-                            std::isinf(plain) ? "some" : factor_in_words(plain) + " times");
+  text += "; as many more readings like the present ones ";
+  return text +
+         (std::isinf(plain) ? "would do so, too." : "do so " + factor_in_words(plain) + " times better.");
 }
 
 std::string shows(const Finding& finding) {
@@ -62,10 +63,11 @@ std::string shows(const Finding& finding) {
   if (finding.has("detectable")) {
     const FindingNumber& detectable = finding.number("detectable");
     return what_is_measured(finding) +
-           fmt::format("makes visible {}, from {:.2g} {} on.", names, detectable.in_unit(), detectable.unit);
+           fmt::format("makes {} visible from {:.2g} {} on.", names, detectable.in_unit(), detectable.unit);
   }
-  return what_is_measured(finding) + fmt::format("makes visible {} of {} effects that are not: {}.",
-                                                 effects.size(), finding.count("of"), names);
+  return what_is_measured(finding) +
+         fmt::format("makes {} of {} effects visible that are not visible now: {}.", effects.size(),
+                     finding.count("of"), names);
 }
 
 /// "[500, -200, 350] mm"

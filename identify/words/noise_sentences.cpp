@@ -11,7 +11,7 @@ namespace volcal {
 namespace {
 
 constexpr const char* kHardlyNoise =
-    "; that is hardly the instrument: an effect that the model lacks looks like noise, or the noise table is "
+    "; the instrument alone hardly explains this: the model may lack an effect, or the noise table may be "
     "wrong";
 
 std::string sigma_contradicted(const Finding& finding) {

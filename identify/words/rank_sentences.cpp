@@ -116,8 +116,8 @@ std::string remedy_in_words(const std::string& remedy, const Finding& finding) {
     return "turn both rotary axes at once, over a grid of their positions: one at a time they exchange "
            "errors";
   if (remedy == "linear-axes")
-    return "measure the linear axes, too, with the rotary axes at 0 (tracer, straightness, square): what "
-           "they do while they follow is else one with it";
+    return "measure the linear axes, too, with the rotary axes at 0 (tracer, straightness, square): without "
+           "that, their errors while they follow a rotary axis cannot be separated from those of that axis";
   if (remedy == "spheres") return "measure at three places on the table that lie on no line";
   if (remedy == "mandrel")
     return "add a mandrel whose tip lies 60 mm or more to the side of the spindle's axis";

@@ -231,7 +231,7 @@ std::string to_string(Outcome outcome) {
       return "unknown, right variables";
     case Outcome::UnknownOther:
       return "unknown, other variables";
-    case Outcome::Silent:
+    case Outcome::NothingExceeds:
       return "nothing above";
     case Outcome::NotVisible:
       return "not visible";
@@ -248,7 +248,7 @@ Outcome outcome_of(const CampaignRecord& record) {
   if (!all_right(record.named)) return Outcome::Wrong;
   const bool silent = record.verdict == "NOTHING_ABOVE" || record.verdict == "NOT_VISIBLE";
   if (record.hidden.empty() && silent) return Outcome::Right;
-  if (record.verdict == "NOTHING_ABOVE") return Outcome::Silent;
+  if (record.verdict == "NOTHING_ABOVE") return Outcome::NothingExceeds;
   if (record.verdict == "NOT_VISIBLE") return Outcome::NotVisible;
   if (record.verdict == "UNKNOWN") return right_variables(record) ? Outcome::Unknown : Outcome::UnknownOther;
   if (record.verdict == "ONE_OF") return outcome_of_sets(record);
@@ -382,8 +382,8 @@ std::vector<Figure> figures_of(const Campaigns& campaigns) {
     add(std::string(title) + ": one of several",
         outcome({Outcome::WrongSet, Outcome::LargeSet, Outcome::RightInSet, Outcome::RightInClasses}),
         row(name), "");
-    add(std::string(title) + ": nothing above", outcome({Outcome::Silent, Outcome::NotVisible}), row(name),
-        "");
+    add(std::string(title) + ": nothing above", outcome({Outcome::NothingExceeds, Outcome::NotVisible}),
+        row(name), "");
   }
   add("one cause in several places: right name or in a set of up to 3", right, row("shared"), ">= 90 %");
   add("  its driver alone: right name", outcome({Outcome::Right}), row("shared"), ">= 90 %");
@@ -438,7 +438,7 @@ std::vector<Figure> figures_of(const Campaigns& campaigns) {
     add(std::string(layout) + ": wrong confident name", wrong, among, "");
     add(std::string(layout) + ": right name or in a set of up to 3", right, among, "");
     add(std::string(layout) + ": not visible, or nothing above",
-        outcome({Outcome::NotVisible, Outcome::Silent}), among, "");
+        outcome({Outcome::NotVisible, Outcome::NothingExceeds}), among, "");
   }
   return figures;
 }

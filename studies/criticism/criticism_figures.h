@@ -23,7 +23,7 @@ enum class Outcome {
   Part,            ///< NAMED, all names right, something hidden is missing
   Unknown,         ///< UNKNOWN with the right variables and direction
   UnknownOther,    ///< UNKNOWN, with others
-  Silent,          ///< NOTHING_ABOVE
+  NothingExceeds,  ///< NOTHING_ABOVE
   NotVisible,
   Wrong,  ///< a wrong effect stands among the named ones
   NoDiagnosis

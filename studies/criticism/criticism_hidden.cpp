@@ -21,9 +21,9 @@ constexpr const char* kEverywhere = " everywhere";
 /// One cause in several places.
 bool is_shared(const std::string& kind) { return kind.ends_with(kAtStation) || kind.ends_with(kEverywhere); }
 
-class Drawer {
+class HiddenEffectGenerator {
  public:
-  Drawer(std::string kind, const sim::Study& study, sim::RandomStream& random)
+  HiddenEffectGenerator(std::string kind, const sim::Study& study, sim::RandomStream& random)
       : kind_(std::move(kind)), study_(study), random_(random) {
     for (const sim::Measurement& measurement : study.measurements) {
       for (sim::SetupPlan& plan : sim::plan_setups(measurement, study.machine, study.seed)) {
@@ -281,7 +281,7 @@ std::string catalogue_kind(const std::string& hidden_kind) {
 }
 
 sim::HiddenEffect random_effect(const std::string& kind, const sim::Study& study, sim::RandomStream& random) {
-  return Drawer(kind, study, random).draw();
+  return HiddenEffectGenerator(kind, study, random).draw();
 }
 
 sim::HiddenEffect first_of_kind(const std::string& kind, const sim::Study& study) {

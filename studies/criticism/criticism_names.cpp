@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kNotable = 0.5;  // component of a direction against its largest
 
-class Answerer {
+class ExpectedDiagnosis {
  public:
-  Answerer(const sim::HiddenEffect& hidden, const Campaign& campaign)
+  ExpectedDiagnosis(const sim::HiddenEffect& hidden, const Campaign& campaign)
       : hidden_(hidden), campaign_(campaign) {}
 
   RightAnswer answer() {
@@ -258,7 +258,7 @@ class Answerer {
 }  // namespace
 
 RightAnswer right_answer(const sim::HiddenEffect& hidden, const Campaign& campaign) {
-  return Answerer(hidden, campaign).answer();
+  return ExpectedDiagnosis(hidden, campaign).answer();
 }
 
 std::string text_of(const sim::HiddenEffect& hidden) {

@@ -64,7 +64,7 @@ std::string new_setup_name(const std::string& file, std::set<std::string>& taken
 }
 
 std::string facts_text(const ImportedFile& file) {
-  TextTable table({{"", Align::Left}, {"", Align::Left}, {"said by", Align::Left}}, file.path);
+  TextTable table({{"", Align::Left}, {"", Align::Left}, {"source", Align::Left}}, file.path);
   for (const ImportFact& fact : file.readings.facts)
     table.add_row({printable(fact.what), printable(fact.value), printable(fact.said_by)});
   return table.text();

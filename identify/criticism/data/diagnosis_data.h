@@ -191,7 +191,7 @@ struct Confounding {
 
 /// A measurement that would tell hypotheses apart, or make effects visible (next_measurement.h).
 struct MeasurementProposal {
-  std::string action;                     ///< entry of the menu; empty: nothing on the menu helps
+  std::string action;                     ///< candidate measurement; empty: none helps
   std::string setup;                      ///< setup that it continues; empty = a new one
   std::vector<EffectName> separates;      ///< two hypotheses, or none
   std::vector<EffectName> makes_visible;  ///< of effects that are not

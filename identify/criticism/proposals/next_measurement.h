@@ -1,5 +1,5 @@
 #pragma once
-/// Which measurement next: of everything on the menu (candidates/candidate_measurements.h), the one that
+/// Which measurement next: of all candidates (candidates/candidate_measurements.h), the one that
 /// would tell hypotheses apart that the readings cannot, or make an effect visible that is not.
 ///
 /// With the readings that a measurement would add, hypotheses f and r stand

@@ -106,12 +106,13 @@ std::string study_head(const MonteCarloResult& result) {
   static constexpr const char* kPathWords[] = {"", "linear: one matrix product, drawn among the parameters",
                                                "chord: readings drawn, steps with an exact gradient",
                                                "refit: readings drawn, the adjustment run again"};
-  std::string text = fmt::format("Monte Carlo, {} draws, seed {}\n  path       {}\n  functions  {}\n",
-                                 count_number(static_cast<long long>(result.draws)), result.seed,
-                                 kPathWords[static_cast<int>(result.path)],
-                                 result.functions == FunctionRoughness::Drawn
-                                     ? "drawn: what is said of their roughness is drawn about the machine"
-                                     : "fixed: repeated campaigns on one machine, smoothing's bias apart");
+  std::string text =
+      fmt::format("Monte Carlo, {} draws, seed {}\n  path       {}\n  functions  {}\n",
+                  count_number(static_cast<long long>(result.draws)), result.seed,
+                  kPathWords[static_cast<int>(result.path)],
+                  result.functions == FunctionRoughness::Drawn
+                      ? "drawn: the prior of their roughness is drawn about the identified machine"
+                      : "fixed: repeated campaigns on one machine, smoothing's bias apart");
   for (const std::string& disturbance : result.disturbances)
     text += "  disturbed  by " + disturbance + ", which the fit knows nothing of\n";
   if (result.adaptive) {

@@ -164,9 +164,9 @@ const std::vector<WordedFinding>& examples() {
         {{"instrument", "ball-bar"}, {"times", FindingNumber{5.0}}, {"hardly_noise", true}}},
        "ball-bar: its residuals scatter 5 times as much as its stated sigma; weights and uncertainties use "
        "the "
-       "estimated value; that is hardly the instrument: an effect that the model lacks looks like noise, or "
-       "the noise "
-       "table is wrong"},
+       "estimated value; the instrument alone hardly explains this: the model may lack an effect, or the "
+       "noise "
+       "table may be wrong"},
       {{FindingCode::NoiseMoreThanWhite,
         {{"instrument", "laser-tracer"},
          {"drift", FindingNumber{0.41e-6, "um", 1e-6}},
@@ -178,9 +178,8 @@ const std::vector<WordedFinding>& examples() {
        "0.2 um/m in proportion to length); weights and uncertainties allow for it"},
       {{FindingCode::NoiseSeveralTimesStated,
         {{"instrument", "laser-tracer"}, {"times", FindingNumber{3.456}}}},
-       "laser-tracer: all its noise together is 3.46 times what is stated; that is hardly the instrument: an "
-       "effect "
-       "that the model lacks looks like noise, or the noise table is wrong"},
+       "laser-tracer: all its noise together is 3.46 times what is stated; the instrument alone hardly "
+       "explains this: the model may lack an effect, or the noise table may be wrong"},
       {{FindingCode::NoiseTakenAsIndependent},
        "robust loss: readings are taken as independent; correlated drift and offsets of lines were not "
        "looked for"},
@@ -510,14 +509,14 @@ const std::vector<WordedFinding>& examples() {
       {{FindingCode::TimesUnrecorded, {{"kinds", Texts{"station-drift", "thermal-drift"}}}},
        "Not looked for, as no reading records its time (time_s): station-drift, thermal-drift."},
       {{FindingCode::MeasurementNoneSeparates, {{"effects", Texts{"EXX reversal", "P1 drift"}}}},
-       "Nothing on the menu tells EXX reversal from P1 drift: they predict nearly the same readings."},
+       "No candidate measurement separates EXX reversal from P1 drift: they predict nearly the same "
+       "readings."},
       {{FindingCode::MeasurementNoneSeparates,
         {{"effects", Texts{"EXX reversal", "P1 drift"}},
          {"difference", FindingNumber{0.31e-6, "um", 1e-6}},
          {"U", FindingNumber{0.5e-6, "um", 1e-6}}}},
-       "Nothing on the menu tells EXX reversal from P1 drift in a way that is worth it, and it does not "
-       "matter: "
-       "in the measured volume predictions differ by at most 0.31 um (U 0.5 um)."},
+       "No candidate measurement separates EXX reversal from P1 drift well enough to be worth its time. This "
+       "does not matter: in the measured volume their predictions differ by at most 0.31 um (U 0.5 um)."},
       {{FindingCode::MeasurementSeparates,
         {{"action", "revisit"},
          {"measurement", "measure P1 with tool short again after 3 h"},
@@ -525,8 +524,8 @@ const std::vector<WordedFinding>& examples() {
          {"effects", Texts{"EXX reversal", "P1 drift"}},
          {"gain", FindingNumber{150.4}},
          {"plain_gain", FindingNumber{1.042}}}},
-       "Measure P1 with tool short again after 3 h (48 readings): tells EXX reversal from P1 drift 150 times "
-       "better; as many further plain readings: 1.04 times."},
+       "Measure P1 with tool short again after 3 h (48 readings): separates EXX reversal from P1 drift 150 "
+       "times better; as many more readings like the present ones do so 1.04 times better."},
       {{FindingCode::MeasurementSeparates,
         {{"action", "revisit"},
          {"measurement", "measure P1 again"},
@@ -534,8 +533,8 @@ const std::vector<WordedFinding>& examples() {
          {"effects", Texts{"a", "b"}},
          {"gain", FindingNumber{std::numeric_limits<double>::infinity()}},
          {"plain_gain", FindingNumber{std::numeric_limits<double>::infinity()}}}},
-       "Measure P1 again (48 readings): tells a from b, which the present readings cannot at all; as many "
-       "further plain readings: some."},
+       "Measure P1 again (48 readings): separates a from b, which the present readings cannot do; as many "
+       "more readings like the present ones would do so, too."},
       {{FindingCode::MeasurementShows,
         {{"action", "calibrated-length"},
          {"measurement", "measure a circle"},
@@ -543,14 +542,15 @@ const std::vector<WordedFinding>& examples() {
          {"effects", Texts{"length scale"}},
          {"of", std::int64_t{1}},
          {"detectable", FindingNumber{0.52e-6, "um/m", 1e-6}}}},
-       "Measure a circle (48 readings): makes visible length scale, from 0.52 um/m on."},
+       "Measure a circle (48 readings): makes length scale visible from 0.52 um/m on."},
       {{FindingCode::MeasurementShows,
         {{"action", "calibrated-length"},
          {"measurement", "measure a circle"},
          {"readings", std::int64_t{48}},
          {"effects", Texts{"a", "b", "c", "d", "e"}},
          {"of", std::int64_t{7}}}},
-       "Measure a circle (48 readings): makes visible 5 of 7 effects that are not: a, b, c, d, ...."},
+       "Measure a circle (48 readings): makes 5 of 7 effects visible that are not visible now: a, b, c, d, "
+       "...."},
       {{FindingCode::PlanSetupMore, {{"tool", "side_x"}, {"place", "P1"}, {"kind_of_place", "station"}}},
        "tool side_x at P1"},
       {{FindingCode::PlanSetupMore,

@@ -207,7 +207,7 @@ TEST_F(DiagnosisReport, AProposalSaysWhatIsDoneBeforeWhatItIsGoodFor) {
   EXPECT_EQ(proposals.at(0).at("what"), "Measure P1 again after 3 h");
   EXPECT_EQ(proposals.at(0).at("separates").at(0).at("label"), "axis-coupling:EAY:z:linear");
   EXPECT_EQ(proposals.at(0).at("separates").at(1).at("label"), "EYX finer");
-  EXPECT_EQ(proposals.at(1).at("what"), "Nothing on the menu");
+  EXPECT_EQ(proposals.at(1).at("what"), "No candidate measurement");
   EXPECT_FALSE(proposals.at(1).at("helps").get<bool>());
   EXPECT_TRUE(proposals.at(1).at("gain").is_null());
   EXPECT_FALSE(page("confounding").at("effects").at(2).at("can_be_asked").get<bool>());

@@ -120,7 +120,7 @@ void require_one_source(const ExtendArguments& arguments) {
   }
   if (arguments.rank > 0 && arguments.accepted)
     throw InputError({}, "--rank and --accepted are both given", "leave one of the two out");
-  if (!chooses) throw InputError({}, "it is not said which effect of the diagnosis to add", usage);
+  if (!chooses) throw InputError({}, "no effect of the diagnosis is chosen", usage);
 }
 
 /// model.toml, model-1.toml, model-2.toml ...: the next of them that does not exist.

@@ -40,10 +40,10 @@ std::string criticism_text(const CriticismArguments& arguments, const studies::C
     detections.add_row({detection.effect, count_number(detection.campaigns), fixed_number(detection.ratio, 3),
                         fixed_number(detection.low, 3) + " to " + fixed_number(detection.high, 3)});
   }
-  TextTable confusion({{"row | hidden", Align::Left}, {"said", Align::Left}, {"campaigns"}},
-                      "What was hidden, and what was said");
+  TextTable confusion({{"row | hidden", Align::Left}, {"reported", Align::Left}, {"campaigns"}},
+                      "Hidden effects, and what the diagnosis reported");
   for (const auto& [hidden, answers] : studies::confusion_of(campaigns)) {
-    for (const auto& [said, count] : answers) confusion.add_row({hidden, said, count_number(count)});
+    for (const auto& [reported, count] : answers) confusion.add_row({hidden, reported, count_number(count)});
   }
   const studies::CriticismOptions& options = arguments.options;
   return fmt::format(

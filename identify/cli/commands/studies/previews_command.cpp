@@ -26,7 +26,7 @@ std::string previews_text(const std::vector<studies::PreviewedCampaign>& campaig
                    {"effect", Align::Left},
                    {"preview off by, of U95"},
                    {"refit"},
-                   {"said", Align::Left}},
+                   {"reported", Align::Left}},
                   "Previews or refits that did not hold");
   int failed = 0;
   for (const studies::PreviewedCampaign& campaign : campaigns) {
@@ -40,7 +40,7 @@ std::string previews_text(const std::vector<studies::PreviewedCampaign>& campaig
   return fmt::format(
       "linear previews of a session and refits against their full fits, {} campaigns ({} without any); "
       "intervals after Wilson\n\npreviews less than U95/4 from the full fit: {}\nrefits:  "
-      "                                   {}\nof the other refits, said in words:        {}\n\n{}",
+      "                                   {}\nof the other refits, reported as such:     {}\n\n{}",
       campaigns.size(), failed, studies::previews_that_held(campaigns).text(),
       studies::refits_that_held(campaigns).text(), studies::misses_said(campaigns).text(),
       table.empty() ? "" : table.text());

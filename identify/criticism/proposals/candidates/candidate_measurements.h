@@ -1,5 +1,5 @@
 #pragma once
-/// What could be measured next. An entry of the menu makes, from a campaign, setups that were not measured:
+/// What could be measured next. A candidate makes, from a campaign, setups that were not measured:
 /// plain data with nominal readings. A new entry is one file with a function and one line in
 /// candidate_measurements.cpp.
 
@@ -38,7 +38,7 @@ struct CandidateKind {
 };
 
 std::span<const CandidateKind> candidate_kinds();
-/// All entries' measurements, in the menu's order.
+/// The measurements of all candidates, in their order.
 std::vector<ExtraMeasurement> candidate_measurements(const CandidateContext& context);
 
 }  // namespace volcal

@@ -1,5 +1,5 @@
 #pragma once
-/// Readings that were not taken: what the entries of the menu share.
+/// Readings that were not taken: what the candidates share.
 
 #include <functional>
 #include <string>

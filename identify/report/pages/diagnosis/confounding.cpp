@@ -73,7 +73,7 @@ std::string label_of(const Diagnosis& diagnosis, const EffectName& name) {
 
 /// What is done, without what it is good for: "Measure P1 with tool short again after 3 h".
 std::string what_is_done(const MeasurementProposal& proposal) {
-  if (proposal.action.empty()) return "Nothing on the menu";
+  if (proposal.action.empty()) return "No candidate measurement";
   const std::string words = sentence(proposal.finding);
   return words.substr(0, words.find(fmt::format(" ({} readings)", proposal.readings)));
 }

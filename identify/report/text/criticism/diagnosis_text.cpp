@@ -38,7 +38,7 @@ std::string ladder_table(const Diagnosis& diagnosis) {
                    {"systematic [um]"},
                    {"95 % interval [um]"},
                    {"log-likelihood"}},
-                  "The ladder (held-out lines did not choose)");
+                  "Models compared on held-out lines");
   for (const LadderStep& step : diagnosis.ladder) {
     table.add_row(
         {step.model, step.added.empty() ? "as given" : step.added, edge(step.rms_fit, kMicro),

@@ -1,4 +1,4 @@
-// Every entry of the menu, and the planner against plain matrix algebra.
+// Every candidate measurement, and the planner against plain matrix algebra.
 
 #include "volcal/identify/criticism/proposals/candidates/candidate_measurements.h"
 

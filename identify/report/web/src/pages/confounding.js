@@ -105,7 +105,7 @@ function remedy(hypotheses, a, b) {
   if (proposals.length > 0) {
     return el('ul', {}, proposals.map((each) => el('li', {}, each.helps
       ? [el('strong', {}, each.what), ` (${each.readings} readings): ${significant(each.now, 2)} → ${significant(each.reached, 2)} σ apart; as many plain readings: ${significant(each.plain, 2)} σ.`]
-      : 'Nothing on the menu tells the two apart.')));
+      : 'No candidate measurement separates the two.')));
   }
   const asked = [a, b].map((k) => hypotheses.effects[k]);
   if (!asked.every((effect) => effect.can_be_asked)) return el('p', { class: 'muted' }, 'One of the two is a change of the model itself: no measurement is planned for that.');

@@ -26,7 +26,7 @@ std::optional<AxisName> linear_axis_of(const std::string& option, const std::str
   if (letter.empty()) return std::nullopt;
   const auto axis = letter.size() == 1 ? axis_from_letter(letter[0]) : std::nullopt;
   if (!axis || is_rotary(*axis))
-    throw InputError({}, fmt::format("{}=\"{}\" is no linear axis", option, letter),
+    throw InputError({}, fmt::format("{}=\"{}\" is not a linear axis", option, letter),
                      "give \"X\", \"Y\" or \"Z\"");
   return axis;
 }
@@ -40,7 +40,7 @@ AxisPosition origin_of(const Machine& machine, const py::dict& given) {
     const auto axis = std::ranges::find_if(
         machine.axes, [&](const Axis& each) { return position_column(each.name) == key; });
     if (axis == machine.axes.end())
-      throw InputError({}, "origin: " + key + " is no position of an axis of the machine",
+      throw InputError({}, "origin: " + key + " is not a position of an axis of the machine",
                        "give x_mm, y_mm, z_mm ...");
     origin[index_of(axis->name)] = value.cast<double>() * position_unit(axis->name).si_per_unit;
   }

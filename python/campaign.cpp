@@ -51,7 +51,7 @@ struct GivenReadings {
       if (!array || array.ndim() != 1) {
         PyErr_Clear();
         throw InputError({"readings of " + setup, 0},
-                         "column " + name + " is no array of numbers of one dimension",
+                         "column " + name + " is not an array of numbers of one dimension",
                          "give one number per reading");
       }
       of_setup.push_back({name, {array.data(), static_cast<std::size_t>(array.size())}});

@@ -228,7 +228,7 @@ std::vector<Variable> checked_variables(const std::string& what, const std::vect
   for (const std::string& name : names) {
     const auto variable = Variable::parse_written(name);
     if (!variable)
-      throw InputError({}, what + ": " + name + " is no variable", "variables are " + listed_variables());
+      throw InputError({}, what + ": " + name + " is not a variable", "variables are " + listed_variables());
     variables.push_back(*variable);
   }
   return variables;

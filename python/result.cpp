@@ -137,12 +137,12 @@ std::vector<AxisPosition> positions_of(const Machine& machine, const py::dict& g
     const auto axis = std::ranges::find_if(
         machine.axes, [&](const Axis& each) { return position_column(each.name) == key; });
     if (axis == machine.axes.end())
-      throw InputError({}, key + " is no position of an axis of the machine",
+      throw InputError({}, key + " is not a position of an axis of the machine",
                        "give x_mm, y_mm, z_mm, c_deg ...");
     const Doubles array = Doubles::ensure(values);
     if (!array || array.ndim() != 1) {
       PyErr_Clear();
-      throw InputError({}, key + " is no array of numbers of one dimension", "give one number per point");
+      throw InputError({}, key + " is not an array of numbers of one dimension", "give one number per point");
     }
     const auto count = static_cast<std::size_t>(array.size());
     if (positions.empty()) positions.assign(count, home);

@@ -34,7 +34,7 @@ const TableFormat& format_named(const std::string& name) {
       throw InputError({}, fmt::format("{} is not written: {}", name, refused.reason),
                        "choose another format");
   }
-  throw InputError({}, name + " is no table format",
+  throw InputError({}, name + " is not a table format",
                    fmt::format("there are {}", fmt::join(table_format_names(), ", ")));
 }
 

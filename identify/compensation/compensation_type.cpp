@@ -60,7 +60,7 @@ CompensationType one_type(const std::string& name) {
                          " is special to one machine: its manufacturer says what it corrects (ISO/TR 16907, "
                          "8.2.15 and 8.2.16)",
                      remedy);
-  throw InputError({}, "\"" + name + "\" is no compensation type of ISO/TR 16907, 8.2", remedy);
+  throw InputError({}, "\"" + name + "\" is not a compensation type of ISO/TR 16907, 8.2", remedy);
 }
 
 /// Of the parts alone, L-VOL and R-VOL in place of theirs.

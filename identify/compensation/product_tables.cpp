@@ -133,7 +133,7 @@ class ProductSampler {
     }
     throw InputError({},
                      std::string("what axes ") + letter_of(one) + " and " + letter_of(other) +
-                         " do together is no product of a table and a distance",
+                         " do together is not a product of a table and a distance",
                      "write a format with a grid, or do not superimpose");
   }
 

@@ -118,7 +118,7 @@ void set_nodes(RotaryGrid& grid, const std::vector<std::vector<double>>& rows,
     for (std::size_t a = 0; right && a < grid.axes.size(); ++a)
       right = positions[i][index_of(grid.axes[a].axis)] == rows[i][a];
     if (!right)
-      throw InputError(places[i], "the rows are no complete grid",
+      throw InputError(places[i], "the rows are not a complete grid",
                        "write every combination of positions once, ascending, the last axis fastest; write "
                        "the tables again");
   }

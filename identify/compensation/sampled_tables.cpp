@@ -47,7 +47,7 @@ std::vector<Eigen::Vector3d> sampled(const std::array<std::vector<double>, 3>& n
 }
 
 [[noreturn]] void fail_grid(const SourcePlace& place) {
-  throw InputError(place, "the rows are no complete grid",
+  throw InputError(place, "the rows are not a complete grid",
                    "write every X, Y, Z combination once, ascending, Z fastest; write the tables again");
 }
 

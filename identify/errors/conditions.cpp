@@ -42,7 +42,7 @@ double number_of(const std::string& name, const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw InputError({}, "--conditions " + name + "=" + text + " is no number", "write " + name + "=23.3");
+    throw InputError({}, "--conditions " + name + "=" + text + " is not a number", "write " + name + "=23.3");
   return value;
 }
 

@@ -97,7 +97,7 @@ bool has_checkpoint(const std::string& path) {
 
 std::string checkpoint_state(std::string_view bytes, const std::string& file, std::uint64_t fingerprint) {
   if (!bytes.starts_with(kCheckpointHead)) {
-    throw InputError({file, 0}, "the file is no checkpoint of volcal montecarlo",
+    throw InputError({file, 0}, "the file is not a checkpoint of volcal montecarlo",
                      "move it away, and leave --resume out to begin anew");
   }
   const std::size_t head = kCheckpointHead.size();

@@ -282,7 +282,7 @@ Eigen::MatrixXd PlanProblem::symbol_functionals(const Linearised& at, const std:
       return at.datum.reduce_rows(row);
     }
   }
-  throw InputError({}, "\"" + symbol + "\" is no error of this machine and model",
+  throw InputError({}, "\"" + symbol + "\" is not an error of this machine and model",
                    "name one such as EXX, EC0Y, or volumetric, worst, separate:KIND:TARGET,KIND:TARGET");
 }
 

@@ -63,7 +63,7 @@ class DrillingCycle {
     set_heights(name);
     const double count = commands_.has('L') ? commands_.value('L') : 1.0;
     if (count != std::floor(count) || count < 1.0 || count > kMostCycleMotions)
-      place_.refuse(fmt::format("L{:g} is no number of repetitions", count), "write 1 to 10000");
+      place_.refuse(fmt::format("L{:g} is not a number of repetitions", count), "write 1 to 10000");
     repetitions_ = static_cast<int>(count);
   }
 

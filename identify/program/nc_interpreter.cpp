@@ -243,7 +243,7 @@ void NcInterpreter::arc_motion(bool clockwise) {
   motion.to = target();
   const double turns = step_.commands.has('P') ? step_.commands.value('P') : 1.0;
   if (turns != std::floor(turns) || turns < 1.0 || turns > kMostTurns)
-    place().refuse(fmt::format("P{:g} is no number of turns", turns), "write 1 to 1000");
+    place().refuse(fmt::format("P{:g} is not a number of turns", turns), "write 1 to 1000");
   try {
     motion.arc = arc_of_block({state_.plane, motion.from, motion.to, clockwise, static_cast<int>(turns)});
   } catch (const std::invalid_argument& error) {

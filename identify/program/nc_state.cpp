@@ -88,7 +88,7 @@ void set_work_offset(const NcCommands& commands, const NcPlace& place, NcState& 
     place.refuse("G10 L2 stands under G91; controls differ in what it then does", "write it under G90");
   const double number = commands.value_or_zero('P');
   if (number != std::floor(number) || number < 0.0 || number > static_cast<double>(kWorkOffsets))
-    place.refuse(fmt::format("G10 L2 P{:g} is no work offset", number),
+    place.refuse(fmt::format("G10 L2 P{:g} is not a work offset", number),
                  "write P1 for G54 up to P9 for G59.3");
   const std::size_t index = number == 0.0 ? state.work : static_cast<std::size_t>(number) - 1;
   auto& offset = state.work_offsets[index];

@@ -53,7 +53,7 @@ Worst worst_of(const std::vector<ResidualRecord>& records, std::size_t setup) {
       std::string("check the unit of the reading column (scale = { ... = 1000.0 }), the tool, ") +
       (setup.readings.given.empty()
            ? ""
-           : "whether normals point out of the sphere and its radius is no diameter, ") +
+           : "whether normals point out of the sphere and its radius is not a diameter, ") +
       "and what the setup says of station, centre or direction";
   throw InputError({setup.data.empty() ? campaign.file : setup.data, worst.line}, problem.str(),
                    worst.share > kBlunderShare ? one : all);

@@ -28,7 +28,7 @@ Json parsed_json(const std::string& text, const std::string& file, const std::st
   } catch (const Json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     const auto line = 1 + std::count(text.begin(), end, '\n');
-    throw InputError({file, static_cast<int>(line)}, "the file is no complete JSON", remedy);
+    throw InputError({file, static_cast<int>(line)}, "the file is not complete JSON", remedy);
   } catch (const Json::exception&) {
     throw InputError({file, 0}, "a number in it is too large", remedy);
   }

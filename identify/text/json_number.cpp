@@ -21,7 +21,7 @@ double number_from(const nlohmann::ordered_json& json) {
   if (name == "nan") return std::numeric_limits<double>::quiet_NaN();
   if (name == "inf") return std::numeric_limits<double>::infinity();
   if (name == "-inf") return -std::numeric_limits<double>::infinity();
-  throw std::invalid_argument("\"" + printable(name) + "\" is no number");
+  throw std::invalid_argument("\"" + printable(name) + "\" is not a number");
 }
 
 }  // namespace volcal

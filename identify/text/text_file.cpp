@@ -120,7 +120,7 @@ std::string foreign_text(const std::string& bytes, const std::string& file,
   }
   DecodedText decoded = decode(bytes, *encoding);
   if (decoded.unknown_line > 0)
-    throw InputError({file, decoded.unknown_line}, "a byte here is no character of the encoding named",
+    throw InputError({file, decoded.unknown_line}, "a byte here is not a character of the encoding named",
                      encoding_remedy(bytes, option, ""));
   return checked_text(std::move(decoded.text), file);
 }

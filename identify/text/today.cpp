@@ -19,7 +19,7 @@ std::time_t fixed_time(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
   if (error != std::errc() || end != text.data() + text.size() || seconds < 0 || seconds > kLastTime) {
     throw InputError(
-        {}, std::string("the environment's ") + kFixedTime + " is no time: \"" + std::string(text) + "\"",
+        {}, std::string("the environment's ") + kFixedTime + " is not a time: \"" + std::string(text) + "\"",
         "set it to the seconds since 1970, or unset it");
   }
   return static_cast<std::time_t>(seconds);

@@ -88,7 +88,7 @@ std::string text_as_utf8(const std::string& text, const std::string& file) {
   }
   DecodedText decoded = decode(text, *encoding);
   if (decoded.unknown_line > 0) {
-    throw InputError({file, decoded.unknown_line}, "a byte here is no character of the file's encoding",
+    throw InputError({file, decoded.unknown_line}, "a byte here is not a character of the file's encoding",
                      encoding_remedy(text, "write encoding = \"", "\""));
   }
   return std::move(decoded.text);

@@ -229,7 +229,7 @@ std::string contradiction(const Finding& finding) {
   const std::string readings =
       finding.has("sampled") ? fmt::format(", {} readings evenly chosen", finding.count("sampled")) : "";
   return fmt::format(
-      "the residuals are no noise: {} would explain {:.2g} um RMS of the readings (log10 p {:.1f}, all {} "
+      "the residuals are not noise: {} would explain {:.2g} um RMS of the readings (log10 p {:.1f}, all {} "
       "tests counted{})",
       finding.text("leading"), finding.number("rms").si * 1e6, finding.number("log10_p").si,
       finding.count("tests"), readings);

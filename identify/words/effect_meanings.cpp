@@ -74,7 +74,7 @@ constexpr auto kMeanings = std::to_array<EffectMeaning>({
      "fixture that loads one side"},
     {"axis-coupling",
      "An error motion of one axis changes with the position of another: the machine bends as it moves, and "
-     "is no rigid body.",
+     "is not a rigid body.",
      "the weight of a moving column, table or ram on guideways that give way; an unsupported overhang; "
      "levelling or foundation that lets the bed twist; clamps that strain the structure"},
     {"product-coupling",

@@ -168,7 +168,7 @@ Explanation explanation(const std::optional<Finding>& cause) {
   const auto found = std::ranges::find(kExplanations, cause->code, &std::pair<FindingCode, Explain>::first);
   if (found == kExplanations.end())
     throw std::invalid_argument("\"" + std::string(to_string(cause->code)) +
-                                "\" is no reason for what is not visible");
+                                "\" is not a reason for what is not visible");
   return found->second(*cause);
 }
 

@@ -203,7 +203,7 @@ std::vector<Variable> variables_in(const std::string& list) {
   std::vector<Variable> variables;
   for (const std::string& word : words_in(list)) {
     const auto variable = Variable::parse_written(word);
-    if (!variable) throw std::invalid_argument(word + " is no variable");
+    if (!variable) throw std::invalid_argument(word + " is not a variable");
     variables.push_back(*variable);
   }
   return variables;

@@ -44,7 +44,8 @@ std::string amplitude_unit(const HiddenEffect& effect) {
   const std::string symbol = effect.options.text("symbol").value_or("");
   if (const auto motion = ErrorSymbol::parse(symbol)) return std::string(edge_unit(motion->component));
   if (const auto location = LocationSymbol::parse(symbol)) return std::string(edge_unit(location->component));
-  throw InputError(effect.place, "hidden effect " + effect.kind + ": \"" + symbol + "\" is no error symbol",
+  throw InputError(effect.place,
+                   "hidden effect " + effect.kind + ": \"" + symbol + "\" is not an error symbol",
                    "write a symbol of ISO 230-1, such as EXX, or EC0Y for a location error");
 }
 

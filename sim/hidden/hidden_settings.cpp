@@ -83,7 +83,8 @@ ErrorSymbol HiddenSettings::symbol() const {
   const std::string name = required_text("symbol");
   const auto symbol = ErrorSymbol::parse(name);
   if (!symbol || !context_.machine.has_axis(symbol->axis)) {
-    fail("\"" + name + "\" is no error motion of this machine", "write a symbol of ISO 230-1, such as EXX");
+    fail("\"" + name + "\" is not an error motion of this machine",
+         "write a symbol of ISO 230-1, such as EXX");
   }
   return *symbol;
 }
@@ -98,14 +99,15 @@ LocationSymbol HiddenSettings::location_symbol() const {
   std::vector<std::string> names;
   names.reserve(squareness.size());
   for (const LocationSymbol& each : squareness) names.push_back(each.name());
-  fail("\"" + name + "\" is no location error of this machine", "with this datum there are " + joined(names));
+  fail("\"" + name + "\" is not a location error of this machine",
+       "with this datum there are " + joined(names));
 }
 
 AxisName HiddenSettings::axis(const std::string& stem) const {
   const std::string name = required_text(stem);
   const auto axis = name.size() == 1 ? axis_from_letter(name[0]) : std::nullopt;
   if (!axis || !context_.machine.has_axis(*axis)) {
-    fail("\"" + name + "\" is no axis of this machine", "name one of its axes");
+    fail("\"" + name + "\" is not an axis of this machine", "name one of its axes");
   }
   return *axis;
 }
@@ -122,7 +124,7 @@ std::vector<AxisName> HiddenSettings::linear_axes(const std::string& stem) const
   for (std::string word; words >> word;) {
     const auto name = word.size() == 1 ? axis_from_letter(word[0]) : std::nullopt;
     if (!name || is_rotary(*name) || !context_.machine.has_axis(*name))
-      fail("\"" + word + "\" is no linear axis of the machine", "write \"X Y Z\"");
+      fail("\"" + word + "\" is not a linear axis of the machine", "write \"X Y Z\"");
     if (std::ranges::find(axes, *name) != axes.end()) fail("it names " + word + " twice", "write \"X Y Z\"");
     axes.push_back(*name);
   }
@@ -214,7 +216,7 @@ ReadingTest HiddenSettings::of_column(const std::string& column, const std::stri
     return found;
   });
   if (!exists)
-    fail("\"" + column + "\" is no column that is read there",
+    fail("\"" + column + "\" is not a column that is read there",
          "name an error motion, \"tool x\", \"station NAME x\" or a column of the readings");
   return [reads](const Occasion& occasion, std::size_t channel) { return reads(occasion.plan, channel); };
 }

@@ -22,7 +22,7 @@ std::vector<ErrorSymbol> symbols_of(const HiddenSettings& settings) {
   std::vector<ErrorSymbol> symbols;
   for (std::string word; words >> word;) {
     const auto symbol = ErrorSymbol::parse(word);
-    if (!symbol) settings.fail("\"" + word + "\" is no error motion", kRemedy);
+    if (!symbol) settings.fail("\"" + word + "\" is not an error motion", kRemedy);
     symbols.push_back(*symbol);
   }
   if (symbols.empty()) settings.fail("it names no error motion", kRemedy);

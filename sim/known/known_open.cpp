@@ -61,7 +61,7 @@ StateNumber value_of(const HiddenSettings& settings, const Variable& variable) {
 
 StateNumber value_of(const HiddenSettings& settings, const std::string& written) {
   const auto variable = Variable::parse_written(written);
-  if (!variable) settings.fail("\"" + written + "\" is no variable", "write x, dir_x, T_air, t ...");
+  if (!variable) settings.fail("\"" + written + "\" is not a variable", "write x, dir_x, T_air, t ...");
   return value_of(settings, *variable);
 }
 
@@ -102,7 +102,7 @@ StateNumber only_where_told(const HiddenSettings& settings, const StateNumber& v
     return [value, name](const MachineState& state) { return state.station == name ? value(state) : 0.0; };
   }
   if (what != "setup")
-    settings.fail("only = \"" + only + "\" is no part of a campaign",
+    settings.fail("only = \"" + only + "\" is not a part of a campaign",
                   "write \"tool NAME\", \"station NAME\" or \"setup NAME\"");
   settings.at_setup(name);
   return [value, name](const MachineState& state) { return state.setup == name ? value(state) : 0.0; };
@@ -139,7 +139,7 @@ void add_to_target(const HiddenSettings& settings, const StateNumber& everywhere
   const std::string target = settings.text("target", "");
   if (const auto symbol = ErrorSymbol::parse(target)) {
     if (!settings.machine().has_axis(symbol->axis))
-      settings.fail("\"" + target + "\" is no error motion of this machine", "name one of its axes");
+      settings.fail("\"" + target + "\" is not an error motion of this machine", "name one of its axes");
     scene.machine.add_state_error(*symbol, value);
     return;
   }

@@ -59,7 +59,7 @@ void known_triple_coupling(const HiddenSettings& settings, HiddenScene& scene) {
   std::istringstream words(settings.text("axes", ""));
   for (std::string word; words >> word;) {
     const auto axis = word.size() == 1 ? axis_from_letter(word[0]) : std::nullopt;
-    if (!axis) settings.fail("\"" + word + "\" is no axis", "write axes = \"Y Z Z\" for y z^2");
+    if (!axis) settings.fail("\"" + word + "\" is not an axis", "write axes = \"Y Z Z\" for y z^2");
     product = product_of(product, from_home(settings, *axis));
   }
   add_motion(settings, product, scene);

@@ -198,7 +198,7 @@ double TruthInDatum::location(LocationSymbol symbol) const {
   const auto found = locations_.find(symbol);
   if (found == locations_.end())
     throw std::invalid_argument(symbol.name() +
-                                " is no location error of a rotary or parallel axis of this machine");
+                                " is not a location error of a rotary or parallel axis of this machine");
   return found->second;
 }
 

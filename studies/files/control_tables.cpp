@@ -97,7 +97,7 @@ sim::ControlTables csv_control(std::span<const TableFile> files) {
           is_rotary(location->axis) || std::ranges::find(squareness, *location) != squareness.end();
       if (!known || !metadata.machine.has_axis(location->axis))
         throw InputError({"compensation_tables.csv", 0},
-                         location->name() + " is no squareness of the datum in metadata.csv",
+                         location->name() + " is not a squareness of the datum in metadata.csv",
                          "take metadata.csv of the same run");
       model.locations[*location] = value;
       continue;

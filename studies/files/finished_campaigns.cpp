@@ -14,7 +14,7 @@ bool take_campaign(const std::string& line, const SourcePlace& place, const Take
   try {
     take(json, place);
   } catch (const nlohmann::json::exception&) {
-    throw InputError(place, "the line is no campaign of this study",
+    throw InputError(place, "the line is not a campaign of this study",
                      "choose another folder, or delete the file to begin anew");
   }
   return true;

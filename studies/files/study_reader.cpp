@@ -34,7 +34,7 @@ void read_symbols(const TomlTable& parent, const std::string& name, bool rotatio
   for (const std::string& key : table->keys()) {
     const auto symbol = Symbol::parse(key);
     if (!symbol || !machine.has_axis(symbol->axis)) {
-      table->fail(key, "\"" + printable(key) + "\" is no error of this machine",
+      table->fail(key, "\"" + printable(key) + "\" is not an error of this machine",
                   "write symbols of ISO 230-1, such as EXX, or EC0Y for a location error");
     }
     if (is_rotation(symbol->component) != rotations) {
@@ -52,7 +52,7 @@ void check_location(const TomlTable& truth, const std::string& table_name, Locat
   std::string names;
   for (const LocationSymbol& known : squareness) names += (names.empty() ? "" : ", ") + known.name();
   truth.required_table(table_name)
-      .fail(symbol.name(), symbol.name() + " is no squareness of the machine's datum",
+      .fail(symbol.name(), symbol.name() + " is not a squareness of the machine's datum",
             "with this datum they are " + names);
 }
 
@@ -74,7 +74,7 @@ void read_expansions(const TomlTable& truth, const Machine& machine, sim::TruthS
   for (const std::string& key : tables->keys()) {
     const auto axis = key.size() == 1 ? axis_from_letter(key[0]) : std::nullopt;
     if (!axis || is_rotary(*axis) || !machine.has_axis(*axis)) {
-      tables->fail(key, "\"" + printable(key) + "\" is no linear axis of the machine",
+      tables->fail(key, "\"" + printable(key) + "\" is not a linear axis of the machine",
                    "name one of its axes");
     }
     const TomlTable table = tables->required_table(key);

@@ -129,7 +129,7 @@ TEST_F(AlignedResults, RefuseWhatCannotBeDone) {
   refuses("--origin X=9000", "outside the travel");
   refuses("--primary X --secondary Y --align spindle", "make Z the primary axis");
   refuses("--spindle-tilt A=1", "--align spindle");
-  refuses("--align spindle --spindle-tilt A=x", "is no tilt");
+  refuses("--align spindle --spindle-tilt A=x", "is not a tilt");
   refuses("--align spindle --spindle-tilt A=20000", "10 mrad");
 }
 

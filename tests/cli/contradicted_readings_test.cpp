@@ -58,7 +58,7 @@ class ContradictedReadings : public ::testing::Test {
     const std::string next = "\nnext: volcal diagnose " + campaign + " --auto -o diagnosis\n";
     const std::string fit = fitted(campaign);
     EXPECT_THAT(fit, HasSubstr("status lack_of_fit"));
-    EXPECT_THAT(fit, HasSubstr("! the residuals are no noise: "));
+    EXPECT_THAT(fit, HasSubstr("! the residuals are not noise: "));
     EXPECT_THAT(fit, EndsWith(next));
     const Json result = Json::parse(testing::content(path("result/result.json")));
     EXPECT_EQ(result.at("status"), "lack_of_fit");
@@ -66,7 +66,7 @@ class ContradictedReadings : public ::testing::Test {
       EXPECT_THAT(report(), Not(HasSubstr("The model explains the readings")));
     }
     const std::string compare = compared(campaign);
-    EXPECT_THAT(compare, HasSubstr("the residuals are no noise: "));
+    EXPECT_THAT(compare, HasSubstr("the residuals are not noise: "));
     EXPECT_THAT(compare, EndsWith(next));
   }
 

@@ -240,7 +240,7 @@ TEST_F(MonteCarloCommand, BadCheckpointsAreRefused) {
   EXPECT_THAT(cut.errors, HasSubstr("the checkpoint is cut off or was changed"));
   std::ofstream(path("cut.checkpoint")) << "x_mm,y_mm\n";
   EXPECT_THAT(montecarlo("-n 6000 --path chord --resume -o " + path("cut")).errors,
-              HasSubstr("the file is no checkpoint of volcal montecarlo"));
+              HasSubstr("the file is not a checkpoint of volcal montecarlo"));
 }
 
 TEST_F(MonteCarloCommand, DisturbancesWidenWhatTheFitBelieves) {
@@ -277,7 +277,8 @@ TEST_F(MonteCarloCommand, BadOptionsAreNamed) {
               HasSubstr("how large the effect may be is missing or not positive"));
   EXPECT_THAT(errors("-n 10 --disturb 'length-scale:readings=-1'"),
               HasSubstr("write KIND:TARGET=U for a standard uncertainty"));
-  EXPECT_THAT(errors("-n 10 --disturb 'moonlight:EXX=1'"), HasSubstr("\"moonlight\" is no kind of effect"));
+  EXPECT_THAT(errors("-n 10 --disturb 'moonlight:EXX=1'"),
+              HasSubstr("\"moonlight\" is not a kind of effect"));
 }
 
 /// Two digits of every u take 20,000 draws at least; the limit comes first.

@@ -155,7 +155,7 @@ TEST(Plan, RefusesBadInput) {
   refused(kMachine, "neither readings nor time are limited");
   refused(kMachine + " --readings 100 --tools longest", "no tool longest");
   refused(kMachine + " --readings 100 --tool-count 9", "more tools than there are");
-  refused(kMachine + " --readings 100 --minimise EXQ", "is no error of this machine");
+  refused(kMachine + " --readings 100 --minimise EXQ", "is not an error of this machine");
   refused(kMachine + " --readings 100 --minimise separate:reversal:EXX", "cannot be separated");
   refused(kMachine + " --readings 100 --minimise separate:reversal:EXX,nonsense:Y", "no kind of effect");
   refused(kMachine + " --readings 100 --extend", "nothing to extend");

@@ -202,7 +202,7 @@ TEST_F(TablesAtPoints, RefuseWhatAFormatCannotDo) {
       {"--format heidenhain", "sign is not confirmed publicly"},
       {"--format heidenhain --type L-VOL", "depends on one axis"},
       {"--format sinumerik-vcs", "no public grammar"},
-      {"--format wrong", "is no table format"},
+      {"--format wrong", "is not a table format"},
       {"--format linuxcnc --set sign=1", "has no such setting"},
       {"--format linuxcnc --set units", "write NAME=VALUE"},
       {"--format linuxcnc --set units=mm --set units=mm", "given twice"},

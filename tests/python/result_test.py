@@ -84,7 +84,7 @@ class AgainstTheProgram(Fitted):
             self.assertTrue((self.folder / (name + "-again") / next(iter(tables.files))).exists())
             self.assertLess(tables.error_left["tables"]["rms_um"], tables.error_left["before"]["rms_um"])
         self.assertIn("linuxcnc", volcal.table_formats())
-        self.refused(lambda: volcal.tables(self.result, format="linux"), "linux is no table format")
+        self.refused(lambda: volcal.tables(self.result, format="linux"), "linux is not a table format")
 
     def test_draws_are_the_same(self) -> None:
         said = run_program("montecarlo", FILE, "--model", self.model_file, "-n", "200", "--refits", "1", "--grid", "0", "--path", "linear",

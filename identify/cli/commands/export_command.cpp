@@ -46,7 +46,7 @@ ErrorTableOptions export_table_options(const FitResult& result, const ExportArgu
 void require_result(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored) || is_result(path)) return;
-  throw InputError({path, 0}, "it is no result: export takes result folders",
+  throw InputError({path, 0}, "it is not a result: export takes result folders",
                    "give the folder that volcal fit wrote, or its result.json; errors that are stated in a "
                    "model or in tables have no covariance");
 }

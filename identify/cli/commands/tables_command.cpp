@@ -76,7 +76,7 @@ std::string check_format_name(const std::string& name) {
   for (const RefusedFormat& refused : refused_table_formats()) {
     if (refused.name == name) return fmt::format("{} is not written: {}", name, refused.reason);
   }
-  return fmt::format("{} is no table format; there are {}", name, fmt::join(table_format_names(), ", "));
+  return fmt::format("{} is not a table format; there are {}", name, fmt::join(table_format_names(), ", "));
 }
 
 /// All of them when none is named.

@@ -23,7 +23,7 @@ Eigen::Vector2d tilt_of(const std::string& text) {
     double value = 0.0;
     const bool shaped = part.size() > 2 && (part[0] == 'A' || part[0] == 'B') && part[1] == '=' &&
                         CLI::detail::lexical_cast(part.substr(2), value) && std::isfinite(value);
-    if (!shaped) throw InputError({}, "--spindle-tilt " + text + ": \"" + part + "\" is no tilt", remedy);
+    if (!shaped) throw InputError({}, "--spindle-tilt " + text + ": \"" + part + "\" is not a tilt", remedy);
     double& component = tilt[part[0] == 'A' ? 0 : 1];
     if (component != 0.0)
       throw InputError({}, "--spindle-tilt " + text + ": " + part[0] + " is given twice", remedy);

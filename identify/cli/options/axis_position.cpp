@@ -30,7 +30,8 @@ AxisPosition axis_position(const std::string& option, const std::string& text, c
   std::set<AxisName> named;
   for (const std::string& part : CLI::detail::split(text, ',')) {
     const std::string usage = "write axes and positions in mm or deg, as in X=100,Y=-20.5";
-    if (part.size() < 3 || part[1] != '=') throw error("\"" + part + "\" is no position of an axis", usage);
+    if (part.size() < 3 || part[1] != '=')
+      throw error("\"" + part + "\" is not a position of an axis", usage);
     const auto name = axis_from_letter(part[0]);
     if (!name || !machine.has_axis(*name)) {
       throw error(fmt::format("the machine has no axis {}", part[0]), "its axes are " + axis_names(machine));

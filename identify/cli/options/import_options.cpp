@@ -34,9 +34,9 @@ std::map<AxisName, double> positions_of(const std::string& text) {
             : std::nullopt;
     double value = 0.0;
     if (!axis || !CLI::detail::lexical_cast(part.substr(2), value) || !std::isfinite(value))
-      throw InputError({},
-                       "--at " + printable(text) + ": \"" + printable(part) + "\" is no position of an axis",
-                       "write axes and positions in mm or deg, as in Y=100,Z=-200");
+      throw InputError(
+          {}, "--at " + printable(text) + ": \"" + printable(part) + "\" is not a position of an axis",
+          "write axes and positions in mm or deg, as in Y=100,Z=-200");
     if (!positions.emplace(*axis, value).second)
       throw InputError({}, "--at " + printable(text) + " gives " + letter_of(*axis) + " twice",
                        "leave one of the two out");
@@ -66,7 +66,7 @@ void add_key(const std::string& text, std::map<std::string, std::string>& keys) 
                                         std::string::npos;
   const std::string value = equals == std::string::npos ? "" : trimmed(text.substr(equals + 1));
   if (!bare || value.empty() || value.find('\n') != std::string::npos)
-    throw InputError({}, "--set \"" + printable(text) + "\" is no key and value",
+    throw InputError({}, "--set \"" + printable(text) + "\" is not a key and a value",
                      "write it as in campaign.toml: --set \"noise = { constant_um = 0.3 }\"");
   keys[key] = value;
 }

@@ -16,7 +16,8 @@ constexpr double kLargestLength_mm = 1e5;
 double length_number(const std::string& option, const std::string& text) {
   double value = 0.0;
   if (!CLI::detail::lexical_cast(text, value) || !(std::abs(value) <= kLargestLength_mm))
-    throw InputError({}, fmt::format("{}: \"{}\" is no length in mm", option, text), "write a number of mm");
+    throw InputError({}, fmt::format("{}: \"{}\" is not a length in mm", option, text),
+                     "write a number of mm");
   return value * kMetrePerMillimetre;
 }
 
@@ -28,7 +29,7 @@ Eigen::Vector3d three_coordinates(const std::string& option, const std::string& 
   for (const std::string& part : CLI::detail::split(text, ',')) {
     const char letter = part.empty() ? ' ' : part[0];
     if (letter < 'X' || letter > 'Z')
-      throw InputError({}, fmt::format("{}: \"{}\" is no coordinate", option, part), usage);
+      throw InputError({}, fmt::format("{}: \"{}\" is not a coordinate", option, part), usage);
     const auto axis = static_cast<std::size_t>(letter - 'X');
     if (given[axis]) throw InputError({}, fmt::format("{}: {} is given twice", option, letter), usage);
     given[axis] = true;
@@ -55,7 +56,7 @@ void add_work_offset(const std::string& text, NcSetup& setup) {
       name_and_value("--work-offset", text, "write G54=X10,Y20,Z-300 in mm, machine coordinates");
   const auto index = work_offset_index(name);
   if (!index)
-    throw InputError({}, "--work-offset " + name + " is no work offset",
+    throw InputError({}, "--work-offset " + name + " is not a work offset",
                      "there are G54 to G59, G59.1 to G59.3");
   if (setup.work_offsets[*index])
     throw InputError({}, "--work-offset " + name + " is given twice", "give it once");
@@ -67,7 +68,7 @@ void add_tool_length(const std::string& text, NcSetup& setup) {
   const auto [name, value] = name_and_value("--tool-length", text, usage);
   int number = 0;
   if (name[0] != 'H' || !CLI::detail::lexical_cast(name.substr(1), number) || number < 0)
-    throw InputError({}, "--tool-length " + name + " is no tool", usage);
+    throw InputError({}, "--tool-length " + name + " is not a tool", usage);
   if (!setup.tool_lengths.emplace(number, length_number("--tool-length " + name, value)).second)
     throw InputError({}, "--tool-length " + name + " is given twice", "give it once");
 }

@@ -95,7 +95,7 @@ class PitchReader {
       const auto axis =
           words_.size() == 3 && words_[1].size() == 1 ? axis_from_letter(words_[1][0]) : std::nullopt;
       if (!axis || is_parallel(*axis))
-        lines_.fail("the line is no parameter of an axis", "write number, letter of the axis, value");
+        lines_.fail("the line is not a parameter of an axis", "write number, letter of the axis, value");
       const std::string key = std::string(words_[0]) + letter_of(*axis);
       if (!seen_.insert(key).second)
         lines_.fail("the parameter is given a second time", "delete one of the lines");
@@ -132,7 +132,8 @@ class PitchReader {
 
   void read_values() {
     while (next_row()) {
-      if (words_.size() != 2) lines_.fail("the row is no number and value", "complete or delete the row");
+      if (words_.size() != 2)
+        lines_.fail("the row is not a number and a value", "complete or delete the row");
       const int number = lines_.integer(words_[0], "the number");
       const int value = lines_.integer(words_[1], "the value");
       if (number < 0 || number > kLargestPitchNumber)
@@ -159,7 +160,7 @@ class PitchReader {
     const double intervals = pitch.turn / pitch.interval;
     if (pitch.turn < 0.0 || std::abs(intervals - (pitch.highest - pitch.lowest)) > kWholeTurn ||
         pitch.reference_number != pitch.lowest)
-      fail_axis(pitch.axis, "3620 to 3625 are no turn from the reference position",
+      fail_axis(pitch.axis, "3620 to 3625 are not a turn from the reference position",
                 "write 3620 = 3621, and 3622 as many points above it as a turn (3625) has intervals (3624)");
     for (const int lowest : {pitch.lowest, pitch.bidirectional ? pitch.lowest_negative : pitch.lowest}) {
       int sum = 0;

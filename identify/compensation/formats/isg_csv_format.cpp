@@ -231,7 +231,8 @@ std::map<std::string, std::string> read_isg_list(const TableFile& file) {
   while (lines.advance_to_content()) {
     const auto words = words_of(lines.current());
     if (words[0].front() == '#') continue;
-    if (words.size() != 2) lines.fail("the line is no key and value", "write a key, a blank and its value");
+    if (words.size() != 2)
+      lines.fail("the line is not a key and a value", "write a key, a blank and its value");
     const std::string key(words[0]);
     if (!values.emplace(key, std::string(words[1])).second)
       lines.fail("key " + key.substr(0, 40) + " is given twice", "delete one");

@@ -83,7 +83,7 @@ class SsfkReader {
     if (words.empty()) return;
     ended_ = words.size() == 1 && words[0] == "End";
     if (ended_) return;
-    if (words.size() != 2) lines_.fail("the line is no KEY VALUE", "write a key and one value");
+    if (words.size() != 2) lines_.fail("the line is not KEY VALUE", "write a key and one value");
     constexpr std::string_view kTable = "kw.ssfk.table[";
     if (words[0].starts_with(kTable)) {
       read_entry(words[0].substr(kTable.size()), words[1]);
@@ -102,7 +102,7 @@ class SsfkReader {
                   "write fewer entries, counted from 0");
     const std::string_view column = name.substr(close + 2);
     if (column != "setpoint" && column != "pos" && column != "neg")
-      lines_.fail(std::string(column.substr(0, 40)) + " is no column of the table",
+      lines_.fail(std::string(column.substr(0, 40)) + " is not a column of the table",
                   "entries have setpoint, pos and neg");
     const double metres = lines_.integer(value, "the value") * kSsfkUnit;
     if (!entries_[std::string(column)].emplace(index, metres).second)

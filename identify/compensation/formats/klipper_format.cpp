@@ -29,7 +29,7 @@ CompensationTables read_klipper(std::span<const TableFile> files) {
       continue;
     }
     const auto stop = line.find_first_of("=:");
-    if (stop == std::string_view::npos) lines.fail("the line is no key = value", "write xy_skew = 0.0001");
+    if (stop == std::string_view::npos) lines.fail("the line is not key = value", "write xy_skew = 0.0001");
     const std::string key(trimmed_text(line.substr(0, stop)));
     if (!in_profile || (key != "xy_skew" && key != "xz_skew" && key != "yz_skew"))
       lines.fail("key " + key.substr(0, 40) + " is not one of a profile",

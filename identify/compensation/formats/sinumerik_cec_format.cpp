@@ -264,7 +264,7 @@ CompensationTables read_cec(std::span<const TableFile> files) {
   std::map<int, CecTable> tables;
   for (const SinumerikAssignment& assignment : sinumerik_assignments(file, kCecHeader)) {
     if (!assignment.variable.starts_with(kCec))
-      throw InputError(assignment.place, "the variable is no $AN_CEC", "delete the line");
+      throw InputError(assignment.place, "the variable is not $AN_CEC", "delete the line");
     CecTable& table = tables[sinumerik_index(assignment, 0)];
     table.values.place = assignment.place;
     if (assignment.variable == kCec) {

@@ -56,7 +56,7 @@ void read_enc_assignment(const SinumerikAssignment& assignment, std::map<AxisNam
   const std::string_view name =
       std::string_view(assignment.variable).substr(std::min(kEnc.size(), assignment.variable.size()));
   if (!assignment.variable.starts_with(kEnc))
-    throw InputError(assignment.place, "the variable is no $AA_ENC_COMP", "delete the line");
+    throw InputError(assignment.place, "the variable is not $AA_ENC_COMP", "delete the line");
   if (sinumerik_index(assignment, 0) != 0)
     throw InputError(assignment.place, "the encoder is not 0", "tables are for the first encoder");
   if (assignment.indices.size() < 2)
@@ -88,7 +88,7 @@ void require_turn(AxisName axis, const SinumerikValues& values) {
   const double turn = (*values.high - *values.low) / position_unit(axis).si_per_unit;
   const double step_over = (values.value.rbegin()->second - values.value.begin()->second) / kRadianPerDegree;
   if (std::abs(turn - 360.0) > kSamePlace || std::abs(step_over) > kSameValue)
-    throw InputError(values.place, "a table with IS_MODULO = 1 is no turn that ends as it begins",
+    throw InputError(values.place, "a table with IS_MODULO = 1 is not a turn that ends as it begins",
                      "MAX - MIN must be 360, the last value the first one");
 }
 

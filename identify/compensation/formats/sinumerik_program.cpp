@@ -41,7 +41,7 @@ SinumerikAssignment assignment_in(const TableLines& lines, std::string_view line
                       close != std::string_view::npos && equals != std::string_view::npos && open < close &&
                       close < equals;
   if (!shaped || !trimmed_text(line.substr(close + 1, equals - close - 1)).empty())
-    lines.fail("the line is no assignment", "write $NAME[index]=value");
+    lines.fail("the line is not an assignment", "write $NAME[index]=value");
   return {std::string(line.substr(0, open)), split_indices(line.substr(open + 1, close - open - 1)),
           std::string(without_brackets(trimmed_text(line.substr(equals + 1)))), lines.place()};
 }

@@ -30,7 +30,7 @@ EffectSpec named_effect(const std::string& option, const std::string& text, cons
       "write KIND:TARGET, KIND:TARGET:DRIVER or KIND:TARGET:DRIVER:SHAPE; volcal diagnose --list "
       "prints all kinds";
   if (kind == nullptr)
-    throw InputError({}, option + " " + text + ": \"" + wanted[0] + "\" is no kind of effect", usage);
+    throw InputError({}, option + " " + text + ": \"" + wanted[0] + "\" is not a kind of effect", usage);
   std::vector<EffectSpec> matching;
   std::string names, all;
   for (const EffectSpec& spec : kind->candidates(campaign)) {

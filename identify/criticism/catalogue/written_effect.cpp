@@ -79,12 +79,12 @@ Parameter parameter_of(const std::string& text) {
     throw InputError({}, what + "parameters of an expression are p and q", remedy);
   const auto value =
       finite_number(text.substr(equals + 1, spread == std::string::npos ? spread : spread - equals - 1));
-  if (!value) throw InputError({}, what + "its value is no number", remedy);
+  if (!value) throw InputError({}, what + "its value is not a number", remedy);
   parameter.value = *value;
   if (spread == std::string::npos) return parameter;
   const auto sigma = finite_number(text.substr(spread + 2));
   if (!sigma || *sigma <= 0.0)
-    throw InputError({}, what + "its standard uncertainty is no number greater than 0", remedy);
+    throw InputError({}, what + "its standard uncertainty is not a number greater than 0", remedy);
   parameter.sigma = sigma;
   return parameter;
 }

@@ -34,7 +34,7 @@ Verdict verdict_from(const std::string& text) {
                                 Verdict::NothingAbove, Verdict::NotVisible}) {
     if (to_string(verdict) == text) return verdict;
   }
-  throw std::invalid_argument("\"" + text + "\" is no verdict");
+  throw std::invalid_argument("\"" + text + "\" is not a verdict");
 }
 
 std::string UnknownFinding::dependence() const {

@@ -67,10 +67,10 @@ class MachineReader {
     for (const std::string& name : axes.keys()) {
       if (name.size() == 1 && axis_from_letter(name[0]) && machine_.has_axis(*axis_from_letter(name[0])))
         continue;
-      axes.fail(
-          name,
-          "[axes." + printable(name) + "] is no axis of the structure \"" + machine_.structure.code + "\"",
-          "add the axis to the structure or remove the table");
+      axes.fail(name,
+                "[axes." + printable(name) + "] is not an axis of the structure \"" +
+                    machine_.structure.code + "\"",
+                "add the axis to the structure or remove the table");
     }
   }
 
@@ -172,7 +172,8 @@ class MachineReader {
     for (std::size_t i = 0; i < datum.size() && i < linear; ++i) {
       const AxisName axis = datum[i];
       if (machine_.has_axis(axis)) continue;
-      root_.fail("datum", std::string("the datum axis ") + letter_of(axis) + " is no axis of the structure",
+      root_.fail("datum",
+                 std::string("the datum axis ") + letter_of(axis) + " is not an axis of the structure",
                  "choose primary and secondary among the structure's linear axes in [datum]");
     }
   }

@@ -72,7 +72,7 @@ class ModelReader {
       const auto symbol = ErrorSymbol::parse(name);
       if (!symbol || !machine_.has_axis(symbol->axis)) {
         reject_location_as_function(*functions, name);
-        functions->fail(name, "functions." + printable(name) + " is no error motion of this machine",
+        functions->fail(name, "functions." + printable(name) + " is not an error motion of this machine",
                         suggest_name(name, function_names(machine_), "functions"));
       }
       spec_.functions[*symbol] = read_function(functions->required_table(name), *symbol);
@@ -332,7 +332,7 @@ class ModelReader {
 
   void fail_location(const TomlTable& table, const std::string& key,
                      const std::vector<LocationSymbol>& known) const {
-    table.fail(key, "locations." + printable(key) + " is no location error of this machine",
+    table.fail(key, "locations." + printable(key) + " is not a location error of this machine",
                location_remedy(known));
   }
 

@@ -191,7 +191,7 @@ class ReadingsReader {
     std::vector<std::int8_t> read(values.size());
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (values[row] != -1.0 && values[row] != 0.0 && values[row] != 1.0) {
-        fail(row, column + " = " + number_text(values[row]) + " is no direction of approach",
+        fail(row, column + " = " + number_text(values[row]) + " is not a direction of approach",
              "use -1, 1, or 0 when unknown");
       }
       read[row] = static_cast<std::int8_t>(values[row]);
@@ -205,7 +205,8 @@ class ReadingsReader {
       const bool fits = values[row] == std::round(values[row]) &&
                         std::abs(values[row]) <= std::numeric_limits<std::int32_t>::max();
       if (!fits)
-        fail(row, column + " = " + number_text(values[row]) + " is no " + column + " number", "use integers");
+        fail(row, column + " = " + number_text(values[row]) + " is not a " + column + " number",
+             "use integers");
       read[row] = static_cast<std::int32_t>(values[row]);
     }
     return read;

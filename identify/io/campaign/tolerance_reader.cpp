@@ -98,7 +98,7 @@ class ToleranceReader {
           key, stem + " is an error of a rotary axis",
           "leave it out: the budget is that of the linear axes with the rotary axes at 0, where it is "
           "constant");
-    table_.fail(key, "tolerances." + printable(key) + " is no tolerance of this machine",
+    table_.fail(key, "tolerances." + printable(key) + " is not a tolerance of this machine",
                 suggest_name(key, known, "tolerances"));
   }
 

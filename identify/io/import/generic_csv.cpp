@@ -132,7 +132,7 @@ class GenericCsv {
               "--axis X");
     const auto axis = answers_.axis->size() == 1 ? axis_from_letter((*answers_.axis)[0]) : std::nullopt;
     if (!axis || !machine_.has_axis(*axis))
-      throw InputError({}, "--axis " + printable(*answers_.axis) + " is no axis of the machine",
+      throw InputError({}, "--axis " + printable(*answers_.axis) + " is not an axis of the machine",
                        "give one letter, as --axis X");
     return axis;
   }

@@ -123,9 +123,9 @@ class LaserReadings {
   ErrorSymbol answered_symbol(const std::optional<LineReading>& stated) {
     const auto symbol = ErrorSymbol::parse(*answers_.measures);
     if (!symbol || is_rotary(symbol->axis))
-      throw InputError({},
-                       "--measures " + printable(*answers_.measures) + " is no error motion of a linear axis",
-                       "as EXX, EYX or ECX: the component first, the axis that moves last");
+      throw InputError(
+          {}, "--measures " + printable(*answers_.measures) + " is not an error motion of a linear axis",
+          "as EXX, EYX or ECX: the component first, the axis that moves last");
     if (stated && *stated != kind_of(*symbol))
       throw InputError({source_.path, 0},
                        "--measures " + symbol->name() + " asks for a test of the kind " +
@@ -172,7 +172,8 @@ class LaserReadings {
     const auto si = angle ? angle_unit(*answers_.unit) : length_unit(*answers_.unit);
     if (!si)
       throw InputError(
-          {}, "--unit " + printable(*answers_.unit) + " is no unit of " + (angle ? "an angle" : "a length"),
+          {},
+          "--unit " + printable(*answers_.unit) + " is not a unit of " + (angle ? "an angle" : "a length"),
           "give " + choices);
     add_fact("unit of the deviations", *answers_.unit, "--unit");
     return *si / kMicro;
@@ -262,7 +263,7 @@ class LaserReadings {
           (words.size() == 2 && (words[1] == "C" || words[1] == "degC" || words[1] == "\u00B0C"));
       if (!value || !celsius)
         throw InputError({source_.path, entry->line},
-                         "the temperature \"" + printable(entry->value) + "\" is no number of degC",
+                         "the temperature \"" + printable(entry->value) + "\" is not a number of degC",
                          "write it in degC, or remove its value");
       if (*value == 0.0) {
         add_fact(entry->key, "0, no sensor: not taken", said_by_line(entry->line));

@@ -68,7 +68,7 @@ class RtlParser {
     count = whole_number(value);
     count_line = line;
     if (!count)
-      fail(line, "the count \"" + printable(std::string(value)) + "\" is no whole number", "repair it");
+      fail(line, "the count \"" + printable(std::string(value)) + "\" is not a whole number", "repair it");
   }
 
   void begin_targets(std::string_view value, int line) {
@@ -76,7 +76,7 @@ class RtlParser {
     targets_line_ = line;
     in_targets_ = true;
     if (!value.empty() && !read_targets(value, line))
-      fail(line, "the targets \"" + printable(std::string(value)) + "\" are no numbers", "positions in mm");
+      fail(line, "the targets \"" + printable(std::string(value)) + "\" are not numbers", "positions in mm");
   }
 
   /// False, and nothing is read, for a line that is none of positions.
@@ -85,7 +85,7 @@ class RtlParser {
     for (const std::string_view word : words_between_blanks(text)) {
       const auto value = number(word);
       if (!value)
-        fail(line, "the target \"" + printable(std::string(word)) + "\" is no number", "positions in mm");
+        fail(line, "the target \"" + printable(std::string(word)) + "\" is not a number", "positions in mm");
       laser_.targets_mm.push_back(*value);
     }
     return true;

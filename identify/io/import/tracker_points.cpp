@@ -257,7 +257,7 @@ class TrackerPoints {
     const auto si = angle ? angle_unit(unit) : length_unit(unit);
     if (!si)
       throw InputError({source_.path, layout_.header_line},
-                       "\"" + printable(unit) + "\" is no unit of " + (angle ? "an angle" : "a length"),
+                       "\"" + printable(unit) + "\" is not a unit of " + (angle ? "an angle" : "a length"),
                        "give " + option + (angle ? " gon, deg or rad" : " mm, m or inch"));
     const std::string what = angle ? "unit of the angles" : "unit of the lengths";
     const bool known = std::ranges::any_of(

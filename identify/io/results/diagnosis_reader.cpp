@@ -109,7 +109,7 @@ std::vector<Variable> variables_from(const Json& names) {
   std::vector<Variable> variables;
   for (const std::string& name : names.get<std::vector<std::string>>()) {
     const auto variable = Variable::parse(name);
-    if (!variable) throw std::invalid_argument("\"" + printable(name) + "\" is no variable");
+    if (!variable) throw std::invalid_argument("\"" + printable(name) + "\" is not a variable");
     variables.push_back(*variable);
   }
   return variables;
@@ -118,7 +118,7 @@ std::vector<Variable> variables_from(const Json& names) {
 ScanDirection direction_from(const Json& json) {
   const std::string name = text(json, "direction");
   const auto direction = scan_direction_from(name);
-  if (!direction) throw std::invalid_argument("\"" + printable(name) + "\" is no direction of a scan");
+  if (!direction) throw std::invalid_argument("\"" + printable(name) + "\" is not a direction of a scan");
   return *direction;
 }
 
@@ -126,7 +126,8 @@ ScanDirection direction_from(const Json& json) {
 std::optional<ErrorSymbol> rotation_from(const Json& json) {
   const std::string name = json.value("rotation", "");
   const auto symbol = ErrorSymbol::parse(name);
-  if (!symbol && !name.empty()) throw std::invalid_argument("\"" + printable(name) + "\" is no error motion");
+  if (!symbol && !name.empty())
+    throw std::invalid_argument("\"" + printable(name) + "\" is not an error motion");
   return symbol;
 }
 

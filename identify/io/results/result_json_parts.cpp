@@ -48,14 +48,14 @@ auto value_in(const Table& table, const Json& json) {
 AxisName axis_name(const Json& json) {
   const auto name = json.get<std::string>();
   const auto axis = name.size() == 1 ? axis_from_letter(name[0]) : std::nullopt;
-  if (!axis) throw std::invalid_argument("\"" + printable(name) + "\" is no axis");
+  if (!axis) throw std::invalid_argument("\"" + printable(name) + "\" is not an axis");
   return *axis;
 }
 
 LocationSymbol location_symbol(const Json& json) {
   const auto name = json.get<std::string>();
   const auto symbol = LocationSymbol::parse(name);
-  if (!symbol) throw std::invalid_argument("\"" + printable(name) + "\" is no location error");
+  if (!symbol) throw std::invalid_argument("\"" + printable(name) + "\" is not a location error");
   return *symbol;
 }
 
@@ -245,7 +245,7 @@ Eigen::VectorXd vector_from(const Json& json) {
 ErrorSymbol error_symbol(const Json& json) {
   const auto name = json.get<std::string>();
   const auto symbol = ErrorSymbol::parse(name);
-  if (!symbol) throw std::invalid_argument("\"" + printable(name) + "\" is no error motion");
+  if (!symbol) throw std::invalid_argument("\"" + printable(name) + "\" is not an error motion");
   return *symbol;
 }
 
@@ -385,7 +385,7 @@ std::string covariance_text(const Eigen::MatrixXd& covariance) {
 
 Eigen::MatrixXd covariance_from(const Json& json) {
   const auto size = static_cast<Eigen::Index>(json.size());
-  if (!json.is_array()) throw std::invalid_argument("the covariance is no list");
+  if (!json.is_array()) throw std::invalid_argument("the covariance is not a list");
   for (std::size_t row = 0; row < json.size(); ++row) {
     if (!json[row].is_array() || json[row].size() != row + 1)
       throw std::invalid_argument("the covariance is cut off");

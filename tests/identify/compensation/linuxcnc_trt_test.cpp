@@ -189,7 +189,7 @@ TEST(LinuxCncTrt, DamagedFilesAreRefusedWithFileAndRemedy) {
     return testing::refusal([&] { find_table_format("linuxcnc-trt")->read(std::vector{file}); });
   };
   EXPECT_THAT(message("setp xyzac-trt-kins.y-offset 29.993000\n", ""), HasSubstr("a pin is missing"));
-  EXPECT_THAT(message("xyzac-trt-kins.y-offset", "xyzac-trt-kins.x-offset"), HasSubstr("is no pivot"));
+  EXPECT_THAT(message("xyzac-trt-kins.y-offset", "xyzac-trt-kins.x-offset"), HasSubstr("is not a pivot"));
   EXPECT_THAT(message("xyzac-trt-kins.y-offset", "xyzac-trt-kins.x-rot-point"), HasSubstr("set twice"));
   EXPECT_THAT(message("xyzac-trt-kins.y-offset", "xyzbc-trt-kins.y-offset"),
               HasSubstr("no pin of the module"));

@@ -337,7 +337,7 @@ const std::vector<WordedFinding>& examples() {
          {"rms", FindingNumber{1.24e-6, "um", 1e-6}},
          {"log10_p", FindingNumber{-12.34}},
          {"tests", std::int64_t{812}}}},
-       "the residuals are no noise: EAX by z^2 would explain 1.2 um RMS of the readings (log10 p -12.3, all "
+       "the residuals are not noise: EAX by z^2 would explain 1.2 um RMS of the readings (log10 p -12.3, all "
        "812 tests "
        "counted); `volcal diagnose` tells which effect the model lacks"},
       {{FindingCode::ModelContradicted,
@@ -346,7 +346,7 @@ const std::vector<WordedFinding>& examples() {
          {"log10_p", FindingNumber{-12.34}},
          {"tests", std::int64_t{812}},
          {"sampled", std::int64_t{50000}}}},
-       "the residuals are no noise: EAX by z^2 would explain 1.2 um RMS of the readings (log10 p -12.3, all "
+       "the residuals are not noise: EAX by z^2 would explain 1.2 um RMS of the readings (log10 p -12.3, all "
        "812 tests counted, 50000 readings evenly chosen); `volcal diagnose` tells which effect the model "
        "lacks"},
       {{FindingCode::DiagnosisNamed,

@@ -129,7 +129,7 @@ TEST_F(ImportedCampaign, ACodePageIsNamedInTheRemedy) {
   EXPECT_THAT(read(std::nullopt), HasSubstr("x.rtl:18: the file is not UTF-8 text (give --encoding cp1252"));
   EXPECT_EQ(read(TextEncoding::Cp1252), "");
   EXPECT_THAT(refusal([&] { foreign_text("a\nb\x81\n", "x.rtl", TextEncoding::Cp1252, "give --encoding "); }),
-              HasSubstr("x.rtl:2: a byte here is no character"));
+              HasSubstr("x.rtl:2: a byte here is not a character"));
 }
 
 }  // namespace

@@ -165,7 +165,7 @@ TEST(RtlFile, DamagedFilesAreRefusedWithTheLine) {
               HasSubstr("x.rtl:8: Target-count is 4, but 3 targets follow"));
   EXPECT_THAT(damaged(" 200.000 \n", " 50.000 \n"), HasSubstr("x.rtl:9: target 3, 50 mm, does not continue"));
   EXPECT_THAT(damaged(" 200.000 \n", " 2OO.000 \n"),
-              HasSubstr("x.rtl:11: the target \"2OO.000\" is no number"));
+              HasSubstr("x.rtl:11: the target \"2OO.000\" is not a number"));
   EXPECT_THAT(damaged("EOF::\n", "EOF::\nHEADER::\n"), HasSubstr("text behind EOF::"));
   EXPECT_THAT(damaged("Air temp   : 21.50", "Air temp   : warm"),
               HasSubstr("x.rtl:41: the temperature \"warm\""));

@@ -171,9 +171,9 @@ TEST(DiagnosisJson, SaysWhatIsWrongWithAFile) {
     changed.at("unknown").at(0)[key] = value;
     return changed.dump();
   };
-  EXPECT_THAT(message(with("variables", {"x", "humour"})), HasSubstr("\"humour\" is no variable"));
-  EXPECT_THAT(message(with("direction", "upwards")), HasSubstr("\"upwards\" is no direction of a scan"));
-  EXPECT_THAT(message(with("rotation", "EQX")), HasSubstr("\"EQX\" is no error motion"));
+  EXPECT_THAT(message(with("variables", {"x", "humour"})), HasSubstr("\"humour\" is not a variable"));
+  EXPECT_THAT(message(with("direction", "upwards")), HasSubstr("\"upwards\" is not a direction of a scan"));
+  EXPECT_THAT(message(with("rotation", "EQX")), HasSubstr("\"EQX\" is not an error motion"));
   const testing::ScratchFolder folder;
   EXPECT_THROW(read_diagnosis(folder.path().string()), InputError);
 }

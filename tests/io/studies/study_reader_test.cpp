@@ -221,8 +221,8 @@ TEST(SimulationFile, RefusesWhatMakesNoSenseOfRotaryAxes) {
       {"[truth.functions]\nEXC = { basis = \"fourier\", degree = 1 }\n" + r_test + sphere, "states no value"},
       {"[truth.functions]\nEXB = { basis = \"fourier\", degree = 1, coefficients_um = [1, 2, 3] }\n" +
            r_test + sphere,
-       "is no error motion of this machine"},
-      {"[truth.locations_um]\nEX0B = 1.0\n" + r_test + sphere, "is no error of this machine"},
+       "is not an error motion of this machine"},
+      {"[truth.locations_um]\nEX0B = 1.0\n" + r_test + sphere, "is not an error of this machine"},
       {"[truth.locations_urad]\nEX0C = 1.0\n" + r_test + sphere, "displacements into the one in um"}};
   for (const BadRotaryStudy& study : studies) {
     try {

@@ -95,7 +95,7 @@ int write_one(const CriticismArguments& arguments) {
   const bool is_number = error == std::errc() && end == number.data() + number.size() && index >= 0;
   if (colon == std::string::npos || !is_number ||
       std::ranges::find(studies::criticism_rows(), row) == studies::criticism_rows().end()) {
-    throw InputError({"--one " + arguments.one, 0}, "it is no row and index", "write listed:11");
+    throw InputError({"--one " + arguments.one, 0}, "it is not a row and an index", "write listed:11");
   }
   if (options.output.empty()) throw InputError({"--one", 0}, "it needs a folder", "add -o FOLDER");
   const auto study = studies::study_of_campaign(row, index, options.seed, options.readings);

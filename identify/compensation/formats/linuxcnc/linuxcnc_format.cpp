@@ -95,7 +95,7 @@ class IniReader {
 
   void read_key(std::string_view line) {
     const auto equals = line.find('=');
-    if (equals == std::string_view::npos) lines_.fail("the line is no KEY = VALUE", "write KEY = VALUE");
+    if (equals == std::string_view::npos) lines_.fail("the line is not KEY = VALUE", "write KEY = VALUE");
     const std::string_view key = trimmed_text(line.substr(0, equals));
     const std::string_view value = trimmed_text(line.substr(equals + 1));
     if (section_ == "[TRAJ]" && key == "LINEAR_UNITS") {

@@ -327,7 +327,7 @@ class KinsRotaryReader {
         require_ascending(positions, position, lines_.place());
         positions.push_back(position);
       } else if (positions.at(index) != position) {
-        lines_.fail("the rows are no complete grid, the last axis fastest", "write the tables again");
+        lines_.fail("the rows are not a complete grid, the last axis fastest", "write the tables again");
       }
     }
     RotaryTwist& twist = grid.twists.emplace_back();

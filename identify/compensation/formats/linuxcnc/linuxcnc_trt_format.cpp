@@ -223,7 +223,7 @@ class TrtReader {
     const std::string pin(words[1].substr(prefix.size()));
     const auto known = module_->pins();
     if (std::ranges::find(known, pin) == known.end())
-      lines_.fail("pin " + pin.substr(0, 20) + " is no pivot", kTrtRewrite);
+      lines_.fail("pin " + pin.substr(0, 20) + " is not a pivot", kTrtRewrite);
     if (!pins_.emplace(pin, number(words[2])).second)
       lines_.fail("the pin is set twice", "delete one of them");
   }

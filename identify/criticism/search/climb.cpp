@@ -80,10 +80,10 @@ bool Climb::add_leading() {
 /// no scan exceeds and they explain, together, as much as the scan.
 bool Climb::add_several() {
   if (!reached_.rules().follows(SearchRule::NamesTogether)) return false;
-  const std::vector<FamilyTest> kept = added_tests(reached_.state.added());
   std::set<std::size_t> start;
-  for (const FamilyTest& test : kept) start.insert(test.family);
+  for (const AddedEffect& effect : reached_.state.added()) start.insert(effect.test.family);
   if (!reached_.tried_together.insert(start).second) return false;
+  const Reached before = reached_;
   for (int names = 1; names <= kThresholds.most_together; ++names) {
     if (effects_beyond_errors(reached_.state) >= options_.most) break;
     const FamilyTest* best = reached_.leading_beside_open_errors(nullptr);
@@ -92,12 +92,9 @@ bool Climb::add_several() {
     reached_.rules().tell(SearchRule::NamesTogether);
     reached_.add(*best);
     reached_.test();
-    if (!reached_.state.tests().any_scan_exceeds() && explain_together(kept.size())) return true;
+    if (!reached_.state.tests().any_scan_exceeds() && explain_together(before.state.added().size())) return true;
   }
-  if (reached_.state.added().size() > kept.size()) {
-    reached_.restart_with(kept);
-    reached_.test();
-  }
+  reached_ = before;
   return false;
 }
 

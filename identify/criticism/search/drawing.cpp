@@ -37,7 +37,7 @@ std::vector<SurfaceTest> surfaces_but(std::size_t place, const Reached& from) {
 /// With a further surface, beside these effects.
 Reached drawn(Reached from, const SurfaceTest& surface, const std::vector<FamilyTest>& kept) {
   from.restart_with(kept);
-  from.base = from.base.with_surface(surface, from.state.added());
+  from.begin_from(from.base.with_surface(surface, from.state.added()));
   from.restart_with(kept);
   from.begin_anew();
   return from;
@@ -109,8 +109,8 @@ Reached Drawing::names_for_surfaces(Reached from) const {
 Reached rebuilt(Reached from, const std::vector<SurfaceTest>& surfaces,
                 const std::vector<FamilyTest>& effects) {
   const std::vector<AddedEffect> beside = from.state.added();
-  from.base = from.given;
-  for (const SurfaceTest& surface : surfaces) from.base = from.base.with_surface(surface, beside);
+  from.begin_from(from.given);
+  for (const SurfaceTest& surface : surfaces) from.begin_from(from.base.with_surface(surface, beside));
   from.restart_with(effects);
   from.begin_anew();
   return from;

@@ -200,7 +200,7 @@ std::vector<LadderStep> ladder_of(const ModelState& state) {
     name_step(state, ladder);
   }
   for (std::size_t i = 0; i <= state.added().size(); ++i) {
-    const LinearModel model = state.model().with_smoothing(state.smoothing_of_steps()[i]);
+    const LinearModel model = state.model().with_smoothing(state.steps()[i].smoothing);
     Projector projector(model.problem(), without(model.problem().data, setting.heldout), state.noise(),
                         setting.threads, model.parts());
     for (std::size_t k = 0; k < i; ++k) projector.accept(state.added()[k].columns);

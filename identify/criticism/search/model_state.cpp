@@ -74,7 +74,7 @@ NoiseProblem with_columns(NoiseProblem problem, const Eigen::MatrixXd& columns,
 ModelState::ModelState(LinearModel model, std::shared_ptr<const SearchSetting> setting)
     : setting_(std::move(setting)), model_(std::move(model)) {
   find_noise();
-  smoothing_of_steps_.push_back(model_.smoothing());
+  steps_.push_back(step());
 }
 
 ModelState::ModelState(LinearModel model, std::shared_ptr<const SearchSetting> setting, NoiseEstimate noise)
@@ -83,7 +83,9 @@ ModelState::ModelState(LinearModel model, std::shared_ptr<const SearchSetting> s
       noise_estimate_(std::move(noise)),
       noise_(noise_estimate_.parameters()),
       projector_(projector_without({})),
-      smoothing_of_steps_{model_.smoothing()} {}
+      steps_{step()} {}
+
+ModelStep ModelState::step() const { return {noise_estimate_, model_.smoothing(), model_.removed().size()}; }
 
 ModelState ModelState::with(const FamilyTest& effect) const {
   ModelState next = *this;
@@ -93,8 +95,22 @@ ModelState ModelState::with(const FamilyTest& effect) const {
   next.find_noise();
   if (next.refine_shape_of_last()) next.find_noise();
   while (next.reinstate_outliers()) next.find_noise();
-  next.smoothing_of_steps_.push_back(next.model_.smoothing());
+  next.steps_.push_back(next.step());
   return next;
+}
+
+std::optional<ModelState> ModelState::with_first(std::size_t effects) const {
+  const ModelStep& then = steps_.at(effects);
+  if (effects == added_.size() || then.removed != model_.removed().size()) return std::nullopt;
+  ModelState earlier = *this;
+  earlier.tests_.reset();
+  earlier.added_.resize(effects);
+  earlier.steps_.resize(effects + 1);
+  earlier.noise_estimate_ = then.noise;
+  earlier.noise_ = then.noise.parameters();
+  earlier.model_ = model_.with_smoothing(then.smoothing);
+  earlier.projector_ = earlier.projector_without({});
+  return earlier;
 }
 
 ModelState ModelState::with_at_this_noise(const FamilyTest& effect) const {
@@ -103,7 +119,7 @@ ModelState ModelState::with_at_this_noise(const FamilyTest& effect) const {
   auto projector = std::make_shared<Projector>(*projector_);
   next.added_.push_back({effect, accept(model_, setting_->families[effect.family], effect, *projector), {}});
   next.projector_ = std::move(projector);
-  next.smoothing_of_steps_.push_back(model_.smoothing());
+  next.steps_.push_back(next.step());
   return next;
 }
 
@@ -134,7 +150,7 @@ ModelState ModelState::with_surface(const SurfaceTest& surface,
   next.model_ = next.model_.with_imitated_left_to_the_rest(next.projector_without({})->gram());
   next.added_.clear();
   next.find_noise();
-  next.smoothing_of_steps_ = {next.model_.smoothing()};
+  next.steps_ = {next.step()};
   return next;
 }
 

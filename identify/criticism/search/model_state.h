@@ -8,7 +8,9 @@
 /// that are not held out. Valid near the fit: effects enter linearly, with the derivative of their shape
 /// where the readings see it. Immutable and cheap to copy: a further effect gives another state.
 
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -41,6 +43,13 @@ struct AddedSurface {
   Eigen::Index size() const { return static_cast<Eigen::Index>(effect->amplitudes().size()); }
 };
 
+/// Noise and smoothing once an effect was in the model, and how many readings were then left out.
+struct ModelStep {
+  NoiseEstimate noise;
+  std::vector<SmoothingTerm> smoothing;
+  std::size_t removed = 0;
+};
+
 class ModelState {
  public:
   /// Without any effect.
@@ -51,6 +60,9 @@ class ModelState {
   /// With a further effect, noise and smoothing found anew, and the readings back in use that agree with it:
   /// a fit without the effect takes what it moves most for outliers.
   ModelState with(const FamilyTest& effect) const;
+  /// With the first of the added effects alone, at the noise and smoothing that were found when the last of
+  /// these came in. Absent where readings have come back into use since then.
+  std::optional<ModelState> with_first(std::size_t effects) const;
   /// With a further effect at the same noise and smoothing, its shape as tested: a first answer.
   ModelState with_at_this_noise(const FamilyTest& effect) const;
   /// With other residuals of the linear model at the same noise and smoothing. Throws std::logic_error where
@@ -95,8 +107,8 @@ class ModelState {
   bool is_tested() const { return tests_ != nullptr; }
   /// Throws std::logic_error of a state that is not tested().
   const ModelTests& tests() const;
-  /// Smoothing of the given model, then with every effect as it was added.
-  const std::vector<std::vector<SmoothingTerm>>& smoothing_of_steps() const { return smoothing_of_steps_; }
+  /// The given model, then with every effect as it was added.
+  const std::vector<ModelStep>& steps() const { return steps_; }
 
   /// Reading minus prediction, all observations.
   Eigen::VectorXd residual() const;
@@ -125,6 +137,7 @@ class ModelState {
   void find_noise();
   bool refine_shape_of_last();
   bool reinstate_outliers();
+  ModelStep step() const;
 
   std::shared_ptr<const SearchSetting> setting_;
   LinearModel model_;
@@ -134,7 +147,7 @@ class ModelState {
   std::vector<NoiseParameters> noise_;
   std::shared_ptr<const Projector> projector_;
   std::shared_ptr<const ModelTests> tests_;
-  std::vector<std::vector<SmoothingTerm>> smoothing_of_steps_;
+  std::vector<ModelStep> steps_;
 };
 
 void append_columns(const Eigen::MatrixXd& more, Eigen::MatrixXd& all);

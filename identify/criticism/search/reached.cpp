@@ -19,6 +19,10 @@ bool acts_alike_in_its_places(const ModelState& state, const FamilyTest& test) {
              std::log10(kThresholds.constancy_risk);
 }
 
+bool have_same_columns(const FamilyTest& one, const FamilyTest& other) {
+  return one.family == other.family && one.shape == other.shape;
+}
+
 }  // namespace
 
 std::vector<FamilyTest> added_tests(const std::vector<AddedEffect>& added) {
@@ -41,10 +45,21 @@ void Reached::add(const FamilyTest& effect) {
   open.reset();
 }
 
-void Reached::restart_with(const std::vector<FamilyTest>& effects) {
+void Reached::begin_from(ModelState other) {
+  base = std::move(other);
   state = base;
   open.reset();
-  for (const FamilyTest& effect : effects) add(effect);
+}
+
+void Reached::restart_with(const std::vector<FamilyTest>& effects) {
+  const std::vector<AddedEffect>& added = state.added();
+  const auto differing =
+      std::ranges::mismatch(effects, added, have_same_columns, {}, &AddedEffect::test).in1;
+  const auto kept = static_cast<std::size_t>(differing - effects.begin());
+  if (kept == effects.size() && kept == added.size()) return;
+  state = state.with_first(kept).value_or(base);
+  open.reset();
+  for (std::size_t i = state.added().size(); i < effects.size(); ++i) add(effects[i]);
 }
 
 void Reached::begin_anew() {

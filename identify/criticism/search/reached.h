@@ -44,7 +44,10 @@ struct Reached {
   const SearchRules& rules() const { return setting().rules; }
   void test();
   void add(const FamilyTest& effect);
-  /// The base, and these effects one after another; not tested.
+  /// Another base, without any effect.
+  void begin_from(ModelState other);
+  /// The base, and these effects one after another; not tested. Those that the state begins with stay as they
+  /// are.
   void restart_with(const std::vector<FamilyTest>& effects);
   /// What was no name beside another model may be one now.
   void begin_anew();

@@ -45,8 +45,8 @@ TEST_F(ModelStateOfReversal, AFurtherEffectGivesAnotherState) {
   EXPECT_FALSE(given().has(backlash().family));
   ASSERT_EQ(reached().added().size(), 1U);
   EXPECT_TRUE(reached().has(backlash().family));
-  EXPECT_EQ(given().smoothing_of_steps().size(), 1U);
-  EXPECT_EQ(reached().smoothing_of_steps().size(), 2U);
+  EXPECT_EQ(given().steps().size(), 1U);
+  EXPECT_EQ(reached().steps().size(), 2U);
   EXPECT_FALSE(reached().is_tested());
   EXPECT_THROW(static_cast<void>(reached().tests()), std::logic_error);
   EXPECT_EQ(reached().first_column(0), given().projector().parameters());

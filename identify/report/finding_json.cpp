@@ -2,7 +2,6 @@
 
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/result/result.h"
-#include "volcal/identify/words/effect_meanings.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal::report {
@@ -26,10 +25,11 @@ Json finding_json(const EffectFinding& effect) {
 }
 
 Json meaning_json(const EffectName& name) {
-  const EffectMeaning* meaning = find_meaning(name.kind);
-  if (meaning != nullptr) return {{"plain", meaning->plain}, {"usual_causes", meaning->usual_causes}};
   const EffectKind* kind = find_effect(name.kind);
-  return {{"plain", kind == nullptr ? "" : kind->schema().summary}, {"usual_causes", ""}};
+  if (kind == nullptr) return {{"plain", ""}, {"usual_causes", ""}};
+  const EffectSchema& schema = kind->schema();
+  return {{"plain", schema.plain.empty() ? schema.summary : schema.plain},
+          {"usual_causes", schema.usual_causes}};
 }
 
 Json law_json(const FormulaFinding& law) {

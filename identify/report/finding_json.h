@@ -7,8 +7,8 @@ namespace volcal::report {
 
 /// label, kind, shape, log10_p, visible_fraction, resolution; amplitudes with value, U95, mdb in `unit`.
 Json finding_json(const EffectFinding& effect);
-/// plain, usual_causes (effect_meanings.h); of a kind of the user's own its summary, of a change of the model
-/// nothing.
+/// plain, usual_causes of its kind's schema; the summary of a kind that says nothing plain, as one of the
+/// user's own; of a change of the model nothing.
 Json meaning_json(const EffectName& name);
 /// label, shape, amplitude and U95 in `unit`.
 Json law_json(const FormulaFinding& law);

@@ -12,6 +12,7 @@
 #include "volcal/identify/words/sentences.h"
 #include "volcal/identify/workbench/columns.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/effects/registry.h"
 #include "volcal/model/instruments/registry.h"
 #include "volcal/model/observation/channels.h"
 

@@ -129,6 +129,7 @@ struct InstrumentSchema {
   std::vector<std::vector<ColumnSchema>> given_columns = {};
   /// The reading of a set whose column is derived, from Readings::given; SI.
   std::vector<double> (*derive_reading)(const Readings& readings) = nullptr;
+  bool simulated = true;  ///< sim/measurement has it; the tests hold the two against each other
 
   const std::vector<ColumnSchema>& given_of(std::size_t set) const {
     static const std::vector<ColumnSchema> none;
@@ -145,15 +146,30 @@ struct InstrumentSchema {
   }
 };
 
-/// What an effect declares: keys of its `[[effects]]` table besides `kind`.
+/// A part of an effect's name, kind:target:driver:shape.
+enum class NamePart { Target, Driver, Shape };
+
+/// A word of names of effects that one kind alone has, and what it means. In capitals stands what the user's
+/// files name: SYMBOL, AXIS, TOOL ... (identify/criticism/data/effect_words.h).
+struct NameWord {
+  NamePart part = NamePart::Target;
+  std::string pattern;  ///< "EXPRESSION"
+  std::string meaning;
+};
+
+/// What an effect declares: what is said of it, and keys of its `[[effects]]` table besides `kind`.
 struct EffectSchema {
   std::string kind;
   std::string summary;
+  std::string plain = {};         ///< one sentence for who knows machines and no models
+  std::string usual_causes = {};  ///< "backlash of the screw; loose couplings": to follow "usual causes:"
   std::string source;
   /// Its drivers are, for given directions of approach and conditions, polynomials in the positions of linear
   /// axes, at most cubic in each.
   bool polynomial = false;
   std::vector<KeySchema> keys;
+  std::vector<NameWord> words = {};  ///< of its names, beyond those that all kinds have
+  bool simulated = true;             ///< sim/known has it; the tests hold the two against each other
 };
 
 }  // namespace volcal

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <regex>
 #include <string>
 #include <string_view>
@@ -72,8 +73,8 @@ inline bool is_of_pattern(const std::string& text, std::string_view pattern) {
   return std::regex_match(text, expression);
 }
 
-/// Null when there is none.
-inline const EffectWord* find_word(NamePart part, const EffectName& name) {
+/// Absent when there is none.
+inline std::optional<EffectWord> find_word(NamePart part, const EffectName& name) {
   const std::string& text = part == NamePart::Target   ? name.target
                             : part == NamePart::Driver ? name.driver
                                                        : name.shape;
@@ -81,7 +82,7 @@ inline const EffectWord* find_word(NamePart part, const EffectName& name) {
   const auto found = std::ranges::find_if(words, [&](const EffectWord& word) {
     return is_of_kind(word, name.kind) && is_of_pattern(text, word.pattern);
   });
-  return found == words.end() ? nullptr : &*found;
+  return found == words.end() ? std::nullopt : std::optional(*found);
 }
 
 }  // namespace volcal::testing_support

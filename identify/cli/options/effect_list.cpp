@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <set>
-#include <span>
+#include <vector>
 
 #include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/identify/criticism/data/effect_words.h"
@@ -23,15 +23,16 @@ using Json = nlohmann::ordered_json;
 struct WordList {
   const char* key;
   const char* title;
-  std::span<const EffectWord> words;
+  std::vector<EffectWord> words;
 };
 
 std::vector<WordList> word_lists() {
   return {{"targets", "Targets: what an effect acts on", effect_words(NamePart::Target)},
           {"drivers", "Drivers: what it depends on", effect_words(NamePart::Driver)},
           {"shapes", "Shapes: how it depends on it", effect_words(NamePart::Shape)},
-          {"variables", "Variables of the scans without a catalogue (\"unknown\" in diagnosis.json)",
-           scan_words()}};
+          {"variables",
+           "Variables of the scans without a catalogue (\"unknown\" in diagnosis.json)",
+           {scan_words().begin(), scan_words().end()}}};
 }
 
 std::string words_text(const WordList& list) {
@@ -44,7 +45,7 @@ std::string words_text(const WordList& list) {
   return text;
 }
 
-Json words_json(std::span<const EffectWord> words) {
+Json words_json(const std::vector<EffectWord>& words) {
   Json json = Json::array();
   for (const EffectWord& word : words) {
     json.push_back({{"name", word.pattern}, {"meaning", word.meaning}});

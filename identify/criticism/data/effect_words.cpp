@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include "volcal/model/effects/registry.h"
 
 namespace volcal {
 namespace {
@@ -28,9 +31,6 @@ constexpr auto kTargets = std::to_array<EffectWord>({
     {"readings", "readings of the instruments that the effect is about"},
     {"readings of SETUP", "readings of one setup"},
     {"PLANE", "readings of circles in this plane"},
-    {"TARGET",
-     "as written in the model file: SYMBOL, tool [TOOL] AXIS, station STATION AXIS, COLUMN [of SETUP]",
-     "custom"},
 });
 
 constexpr auto kDrivers = std::to_array<EffectWord>({
@@ -59,7 +59,6 @@ constexpr auto kDrivers = std::to_array<EffectWord>({
     {"setup", "whether the reading belongs to the setup that the target names"},
     {"run RUN", "whether the reading belongs to this run"},
     {"INSTRUMENT", "whether an instrument of this sort reads"},
-    {"VARIABLES", "variables of the expression", "custom"},
 });
 
 /// In the order of Variable::Kind.
@@ -99,10 +98,19 @@ constexpr auto kShapes = std::to_array<EffectWord>({
     {"one-minus-cosine", "with one minus the cosine of the tilt"},
     {"squareness", "an angle between two axes", kLeftOut},
     {"finer", "an error function that needs more knots", kResolution},
-    {"EXPRESSION", "the expression", "custom"},
-    {"curve", "a smooth function of one variable that the readings alone decide", "empirical"},
-    {"surface", "a smooth function of two or three variables that the readings alone decide", "empirical"},
 });
+
+std::span<const EffectWord> common_words(NamePart part) {
+  switch (part) {
+    case NamePart::Target:
+      return kTargets;
+    case NamePart::Driver:
+      return kDrivers;
+    case NamePart::Shape:
+      break;
+  }
+  return kShapes;
+}
 
 }  // namespace
 
@@ -120,16 +128,16 @@ EffectName resolution_name(ErrorSymbol symbol) {
   return {kResolution, symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "finer"};
 }
 
-std::span<const EffectWord> effect_words(NamePart part) {
-  switch (part) {
-    case NamePart::Target:
-      return kTargets;
-    case NamePart::Driver:
-      return kDrivers;
-    case NamePart::Shape:
-      break;
+std::vector<EffectWord> effect_words(NamePart part) {
+  const auto common = common_words(part);
+  std::vector<EffectWord> words(common.begin(), common.end());
+  for (const EffectKind* kind : effect_kinds()) {
+    const EffectSchema& schema = kind->schema();
+    for (const NameWord& word : schema.words) {
+      if (word.part == part) words.push_back({word.pattern, word.meaning, schema.kind});
+    }
   }
-  return kShapes;
+  return words;
 }
 
 std::span<const EffectWord> scan_words() {

@@ -3,15 +3,17 @@
 /// diagnosis.json holds, and --effect and --separate take.
 ///
 /// A word in capitals stands for something of the user's files: SYMBOL (EXX, EC0Y), AXIS (x), PLANE (XY),
-/// TOOL, STATION, SETUP, INSTRUMENT, CHANNEL, RUN. An effect whose words are not here fails its contract
-/// test.
+/// TOOL, STATION, SETUP, INSTRUMENT, CHANNEL, RUN. Words of one kind alone stand in its schema. An effect
+/// whose words are in neither fails its contract test.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "volcal/identify/criticism/data/scan_direction.h"
+#include "volcal/model/description/schema.h"
 #include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect.h"
 
@@ -22,6 +24,8 @@ struct EffectWord {
   std::string_view pattern;  ///< "readings of SETUP"
   std::string_view meaning;
   std::string_view kind = {};  ///< the only one that has it; "common-": all that start so; empty: any
+
+  friend bool operator==(const EffectWord&, const EffectWord&) = default;
 };
 
 /// "kind:target:driver:shape"
@@ -40,9 +44,8 @@ std::vector<std::string> left_out_symbols(const EffectSpec& spec);
 /// Name of more knots for an error function: resolution:EXX:x:finer.
 EffectName resolution_name(ErrorSymbol symbol);
 
-enum class NamePart { Target, Driver, Shape };
-
-std::span<const EffectWord> effect_words(NamePart part);
+/// Words that all kinds have, then those of the schemas of what is registered.
+std::vector<EffectWord> effect_words(NamePart part);
 /// Words for what scans without a catalogue go through, in the order of Variable::Kind.
 std::span<const EffectWord> scan_words();
 

@@ -79,8 +79,8 @@ TEST(Registration, ThreadsMayAddAndRead) {
 TEST(Registries, RefuseNamesOfTheLibrary) {
   const auto maker = [](const EffectTable&) -> std::unique_ptr<FormulaEffect> { return nullptr; };
   const auto none = [](const Campaign&) -> std::vector<EffectSpec> { return {}; };
-  auto reversal =
-      std::make_unique<FormulaKind>(EffectSchema{"reversal", "a second one", "none", false, {}}, maker, none);
+  auto reversal = std::make_unique<FormulaKind>(
+      EffectSchema{.kind = "reversal", .summary = "a second one", .source = "none", .keys = {}}, maker, none);
   EXPECT_THROW(register_effect(std::move(reversal)), std::invalid_argument);
   EXPECT_THROW(register_effect(nullptr), std::invalid_argument);
   EXPECT_THROW(register_instrument(nullptr), std::invalid_argument);

@@ -63,6 +63,10 @@ const EffectKind& common_reversal_effect() {
        .summary =
            "several error motions differ by the same b between the directions of approach of their own "
            "axes: one cause in several drives",
+       .plain = "Several axes stop at two different places by the same amount.",
+       .usual_causes = "one setting of backlash compensation or friction in the control for all axes; drives "
+                       "of one make at one preload; a reflector or probe that follows its carrier late; "
+                       "settling that is not waited for",
        .source = "ISO 230-2:2014, 3.11 (reversal value)",
        .polynomial = true,
        .keys = joined({{shared_symbols_key("error motions that jump alike: \"EXX EYY EZZ\"")},

@@ -37,6 +37,9 @@ const EffectKind& curved_reversal_effect() {
       {.kind = "curved-reversal",
        .summary = "the reversal of an error motion changes with the square of the position of its own axis; "
                   "counted from home, beside reversal and position-reversal",
+       .plain = "The play at reversal is larger or smaller in the middle of the travel than at its ends.",
+       .usual_causes = "a ball screw that is worn in the middle; a long screw that sags; guideways that are "
+                       "tight at both ends",
        .source = "ISO 230-2:2014, 3.11 (reversal value at a position)",
        .polynomial = true,
        .keys = joined({{symbol_key("error motion whose reversal changes: EXX ...")},

@@ -76,15 +76,11 @@ KeySchema wave_key(const std::string& stem, const std::string& unit, const Perio
           .plausible_max = 1e4};
 }
 
-EffectSchema periodic_schema(const PeriodRange& range, const std::string& summary,
-                             const std::string& source) {
-  return {.kind = range.kind,
-          .summary = summary,
-          .source = source,
-          .keys = joined({{symbol_key("error motion: EXX, EYY, EZZ, or another motion of the axis")},
-                          shape_keys("period", "mm", "period in positions of the axis"),
-                          {wave_key("cos", "um", range), wave_key("cos", "urad", range),
-                           wave_key("sin", "um", range), wave_key("sin", "urad", range)}})};
+std::vector<KeySchema> periodic_keys(const PeriodRange& range) {
+  return joined({{symbol_key("error motion: EXX, EYY, EZZ, or another motion of the axis")},
+                 shape_keys("period", "mm", "period in positions of the axis"),
+                 {wave_key("cos", "um", range), wave_key("cos", "urad", range), wave_key("sin", "um", range),
+                  wave_key("sin", "urad", range)}});
 }
 
 std::unique_ptr<FormulaEffect> make_periodic(const EffectTable& table, const PeriodRange& range) {
@@ -130,8 +126,13 @@ std::vector<EffectSpec> positioning_motions(const Campaign& campaign, const char
 
 const EffectKind& lead_error_effect() {
   static const FormulaKind kind(
-      periodic_schema(kLead, "a ball screw repeats its error with its lead and the lead's fractions",
-                      "ISO 3408-3 (periodic travel deviation of ball screws)"),
+      {.kind = kLead.kind,
+       .summary = "a ball screw repeats its error with its lead and the lead's fractions",
+       .plain = "The position repeats its error with every turn of the ball screw.",
+       .usual_causes = "a screw that wobbles because it or its bearing is not centred; a "
+                       "coupling or motor encoder that sits off centre; a bent screw",
+       .source = "ISO 3408-3 (periodic travel deviation of ball screws)",
+       .keys = periodic_keys(kLead)},
       [](const EffectTable& table) { return make_periodic(table, kLead); },
       [](const Campaign& campaign) { return positioning_motions(campaign, kLead.kind); });
   return kind;
@@ -139,11 +140,14 @@ const EffectKind& lead_error_effect() {
 
 const EffectKind& growing_lead_error_effect() {
   static const FormulaKind kind(
-      periodic_schema(
-          kGrowingLead,
-          "the error that repeats with a screw's lead grows in proportion to the travel from home: a "
-          "nut that is out of line with its screw, a bearing at one end",
-          "ISO 3408-3 (periodic travel deviation of ball screws)"),
+      {.kind = kGrowingLead.kind,
+       .summary = "the error that repeats with a screw's lead grows in proportion to the travel from home: a "
+                  "nut that is out of line with its screw, a bearing at one end",
+       .plain = "The position repeats its error with every turn of the ball screw, and the error grows "
+                "along the travel.",
+       .usual_causes = "a bent screw; a screw whose free end whips; a bearing seat out of line at one end",
+       .source = "ISO 3408-3 (periodic travel deviation of ball screws)",
+       .keys = periodic_keys(kGrowingLead)},
       [](const EffectTable& table) { return make_periodic(table, kGrowingLead); },
       [](const Campaign& campaign) { return positioning_motions(campaign, kGrowingLead.kind); });
   return kind;
@@ -151,8 +155,13 @@ const EffectKind& growing_lead_error_effect() {
 
 const EffectKind& rack_error_effect() {
   static const FormulaKind kind(
-      periodic_schema(kRack, "a rack repeats its error with every turn of the pinion that runs on it",
-                      "ISO 1328-1 (total cumulative pitch deviation of a gear, over a turn)"),
+      {.kind = kRack.kind,
+       .summary = "a rack repeats its error with every turn of the pinion that runs on it",
+       .plain = "The position repeats its error with every turn of the pinion on its rack.",
+       .usual_causes = "a pinion that is not centred on its shaft; a gear box or motor encoder that sits off "
+                       "centre; racks that were joined at a wrong pitch, where the period is a rack's length",
+       .source = "ISO 1328-1 (total cumulative pitch deviation of a gear, over a turn)",
+       .keys = periodic_keys(kRack)},
       [](const EffectTable& table) { return make_periodic(table, kRack); },
       [](const Campaign& campaign) { return positioning_motions(campaign, kRack.kind, kRack.least_travel); },
       [](const Campaign& campaign) { return positioning_motions(campaign, kRack.kind); });
@@ -161,8 +170,13 @@ const EffectKind& rack_error_effect() {
 
 const EffectKind& encoder_subdivision_effect() {
   static const FormulaKind kind(
-      periodic_schema(kEncoder, "a scale's interpolation repeats its error within each signal period",
-                      "Heydemann, Appl. Opt. 20 (1981) 3382: errors of quadrature signals"),
+      {.kind = kEncoder.kind,
+       .summary = "a scale's interpolation repeats its error within each signal period",
+       .plain = "The position repeats its error within every signal period of the scale.",
+       .usual_causes = "a dirty scale; a reading head at a wrong distance or angle; signals whose "
+                       "offset, gain or phase was not adjusted; wrong interpolation in the control",
+       .source = "Heydemann, Appl. Opt. 20 (1981) 3382: errors of quadrature signals",
+       .keys = periodic_keys(kEncoder)},
       [](const EffectTable& table) { return make_periodic(table, kEncoder); },
       [](const Campaign& campaign) { return positioning_motions(campaign, kEncoder.kind); });
   return kind;

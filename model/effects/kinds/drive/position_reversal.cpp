@@ -12,6 +12,10 @@ EffectSchema position_reversal_schema() {
           .summary =
               "the reversal of an error motion changes along the travel of its own axis by this much per "
               "metre; counted from home",
+          .plain = "The play at reversal is not the same everywhere on the travel.",
+          .usual_causes =
+              "a ball screw that is worn where it is used most; guideways or wipers that are tighter at one "
+              "end; a screw that winds up by the more the farther the nut is from its bearing",
           .source = "ISO 230-2:2014, 3.11 (reversal value at a position)",
           .polynomial = true,
           .keys = joined({{symbol_key("error motion whose reversal changes: EXX ...")},

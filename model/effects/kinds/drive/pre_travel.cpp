@@ -65,6 +65,10 @@ const EffectKind& pre_travel_effect() {
        .summary =
            "after an axis has turned round, an error motion differs by b between the two directions, "
            "less the further it has travelled: b exp(-s/l); tables hold what is left after long travel",
+       .plain = "After an axis has turned round it takes a way to settle: its error fades the farther it "
+                "travels on.",
+       .usual_causes = "seals, wipers or covers that stick before they slide; friction that winds up the "
+                       "drive; a hydrostatic or plain guideway that lifts as it moves",
        .source =
            "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (presliding displacement)",
        .keys = joined({{symbol_key("error motion that lags: EXX, EYY, EZZ, or another motion of the axis")},

@@ -13,6 +13,11 @@ EffectSchema reversal_schema() {
           .summary =
               "an error motion differs by b between the two directions of approach of its own axis; the "
               "error function is the mean, readings of unknown direction get 0",
+          .plain = "An axis stops at two different places, depending on the side from which it comes.",
+          .usual_causes =
+              "backlash of screw, nut or gear; friction that winds up the drive; loose couplings or "
+              "bearings; a backlash compensation in the control that is missing or wrong; a scale that sits "
+              "far from the guideway",
           .source = "ISO 230-1 and ISO 230-2 (reversal value), as quoted in ISO/TR 16907:2015",
           .polynomial = true,
           .keys = joined({{symbol_key("error motion that jumps at reversal: EXX, EYX, ECX ...")},

@@ -44,6 +44,9 @@ const EffectKind& thermal_reversal_effect() {
       {.kind = "thermal-reversal",
        .summary = "the reversal of an error motion changes with a temperature by this much per kelvin; "
                   "counted from 20 degC",
+       .plain = "The play at reversal changes with a temperature.",
+       .usual_causes = "preload of nut or bearings that changes as they warm; grease that stiffens in the "
+                       "cold; a screw that lengthens between fixed bearings",
        .source = "ISO 230-2:2014, 3.11 (reversal value), ISO 230-3 (thermal effects)",
        .polynomial = true,
        .keys = joined({{symbol_key("error motion whose reversal changes: EXX ..."),

@@ -121,6 +121,9 @@ const EffectKind& worm_error_effect() {
   static const FormulaKind kind(
       {.kind = "worm-error",
        .summary = "a rotary axis repeats its error with every turn of its worm or pinion",
+       .plain = "The angle of a rotary axis repeats its error with every turn of its worm or pinion.",
+       .usual_causes = "a worm or pinion that is not centred in its bearings; a worn or badly meshed pair; a "
+                       "motor's encoder that sits off centre",
        .source = "ISO 1328-1 (single-pitch and tooth-to-tooth composite deviations of gears)",
        .keys = joined({{symbol_key("error motion of a rotary axis: EAA, EBB, ECC, or another")},
                        shape_keys("period", "deg", "period in positions of the axis: 360 / teeth"),
@@ -135,6 +138,9 @@ const EffectKind& ring_eccentricity_effect() {
   static const FormulaKind kind(
       {.kind = "ring-eccentricity",
        .summary = "the encoder ring of a rotary axis sits off centre: its angle is wrong by one wave a turn",
+       .plain = "The angle of a rotary axis is wrong by one wave a turn.",
+       .usual_causes = "an encoder ring or wheel that is not centred on the axis; one reading head where two "
+                       "would cancel it",
        .source = "ISO 230-1, angular positioning; error 2 e / D of a ring of diameter D, eccentric by e",
        .keys = joined({{symbol_key("angle of the axis: EAA, EBB or ECC")}, wave_keys(" of the position")})},
       make_ring_eccentricity,

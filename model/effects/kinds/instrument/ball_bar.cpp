@@ -232,11 +232,15 @@ std::vector<EffectSpec> following_errors(const Campaign& campaign) {
 }  // namespace
 
 const EffectKind& ball_bar_length_effect() {
-  static const FormulaKind kind({.kind = "ball-bar-length",
-                                 .summary = "the calibrated length of the ball-bar is wrong",
-                                 .source = "ISO 230-4 (circular tests)",
-                                 .keys = {amplitude_key("amplitude_um", "reading too long by this")}},
-                                make_ball_bar_length, ball_bar_lengths);
+  static const FormulaKind kind(
+      {.kind = "ball-bar-length",
+       .summary = "the calibrated length of the ball-bar is wrong",
+       .plain = "All circles of the ball-bar are too large or too small by the same amount.",
+       .usual_causes = "the bar was calibrated at another temperature; a seat or an extension was changed "
+                       "after calibration; a worn ball or cup",
+       .source = "ISO 230-4 (circular tests)",
+       .keys = {amplitude_key("amplitude_um", "reading too long by this")}},
+      make_ball_bar_length, ball_bar_lengths);
   return kind;
 }
 
@@ -245,6 +249,10 @@ const EffectKind& servo_mismatch_effect() {
       {.kind = "servo-mismatch",
        .summary = "one axis follows the other late: circles become ellipses at 45 degrees whose direction "
                   "depends on the sense of rotation",
+       .plain = "Circles become ellipses at 45 degrees whose direction turns with the sense of the path: one "
+                "axis follows its command later than the other.",
+       .usual_causes = "position gains of the two axes that differ; feedforward set for one axis only; an "
+                       "axis that carries more load than its drive was tuned for",
        .source = "ISO 230-4, annex; Kakino et al. (1993): servo mismatch in circular tests",
        .keys = {axis_key("axis", "first axis of the circle"), axis_key("second_axis", "second axis"),
                 text_key("by", "\"feed\": in proportion to the feed; absent = the same at every feed", false),
@@ -258,6 +266,9 @@ const EffectKind& following_error_effect() {
   static const FormulaKind kind(
       {.kind = "following-error",
        .summary = "an axis follows its command late, in every plane in which circles move it",
+       .plain = "An axis is late on its path, by the more the faster it moves.",
+       .usual_causes = "a low position gain; feedforward switched off or mistuned; friction or a load that "
+                       "the drive was not tuned for",
        .source = "ISO 230-4, annex; Kakino et al. (1993): servo mismatch in circular tests",
        .keys = {axis_key("axis", "axis that is late"),
                 text_key("by", "\"feed\": in proportion to its velocity; absent = to its share of the feed",

@@ -48,6 +48,10 @@ const EffectKind& beam_misalignment_effect() {
       {.kind = "beam-misalignment",
        .summary = "cosine error: the beam of an interferometer is not parallel to the path and reads too "
                   "short by half the square of the angle, 0.5 ppm at 1 mrad; below zero it is something else",
+       .plain = "The interferometer reads too little, by the more the longer the travel: its beam is not "
+                "parallel to the motion (cosine error).",
+       .usual_causes = "a beam that was not aligned over the whole travel; a reflector or splitter that was "
+                       "knocked; a beam that was set by eye",
        .source = "ISO 230-1 and ISO 230-6 (alignment of laser interferometers)",
        .keys = {text_key("setup", "name of the displacement setup"),
                 {.key = "amplitude_ppm",

@@ -107,6 +107,10 @@ const EffectKind& dead_path_effect() {
        .summary =
            "the dead path of a setup, of all at a station, or of all lasers, changes with time or with a "
            "temperature (air index, thermal drift)",
+       .plain = "All lengths from one station drift together with the air or with time: the part of the beam "
+                "that is not measured changes.",
+       .usual_causes = "a dead path that was not compensated; a station or mount that warms up; a reference "
+                       "that was set long before the readings",
        .source = "ISO 230-6; Edlen, Metrologia 2 (1966) 71",
        .keys = {text_key("setup", "only this setup", false),
                 text_key("station", "all setups at this station; absent, as the setup = all lasers", false),

@@ -91,6 +91,9 @@ const EffectKind& encoder_eccentricity_effect() {
       {.kind = "encoder-eccentricity",
        .summary = "an angle encoder of a laser tracker sits off centre: its angle is wrong by one wave per "
                   "turn",
+       .plain = "An angle of the laser tracker is wrong by one wave per turn.",
+       .usual_causes = "a scale that sits off centre in the tracker's head; a tracker that was dropped or is "
+                       "due for service; a compensation file of another tracker",
        .source =
            "Muralikrishnan et al., J. Res. NIST 114 (2009) 21: geometric misalignments in laser trackers",
        .keys = {text_key("station", "name of the tracker's station; absent = all, one tracker", false),

@@ -170,6 +170,9 @@ const EffectKind& length_scale_effect() {
       {.kind = "length-scale",
        .summary =
            "wavelength or air index is off: every length, or those of one station, is too long by this",
+       .plain = "All lengths of an instrument are too long or too short in proportion.",
+       .usual_causes = "a wrong air temperature, pressure or humidity in the wavelength's compensation; a "
+                       "sensor that is not where the beam is; a wavelength or scale entered wrongly",
        .source = "Edlen, Metrologia 2 (1966) 71: refractive index of air; 1 ppm per kelvin or 3.7 hPa",
        .keys = {text_key("station", "only this station; absent = all lasers", false),
                 amplitude_key("amplitude_ppm", "relative error of lengths")}},
@@ -181,6 +184,9 @@ const EffectKind& station_drift_effect() {
   static const FormulaKind kind(
       {.kind = "station-drift",
        .summary = "a station, or all in the same way, move slowly, in proportion to time",
+       .plain = "A station moves slowly while it measures.",
+       .usual_causes = "a tripod or mount that settles or warms up; a magnetic base on a warm surface; an "
+                       "instrument that had not reached its temperature; a soft floor",
        .source = "Schwenke et al., CIRP Annals 54 (2005): stability of stations in multilateration",
        .keys = joined({{text_key("station", "only this station; absent = all", false)},
                        vector_amplitude_keys("um_per_h", "velocity in workpiece coordinates")})},
@@ -192,6 +198,9 @@ const EffectKind& station_event_effect() {
   static const FormulaKind kind(
       {.kind = "station-event",
        .summary = "a station is pushed at a certain time and stays where it then stands",
+       .plain = "A station was moved at one moment and stayed where it then stood.",
+       .usual_causes = "somebody touched the tripod or a cable; a door, crane or vehicle shook the floor; a "
+                       "clamp slipped",
        .source = "Schwenke et al., CIRP Annals 54 (2005): stability of stations in multilateration",
        .keys = joined(
            {{text_key("station", "name of the station")},
@@ -207,6 +216,9 @@ const EffectKind& tool_offset_effect() {
   static const FormulaKind kind(
       {.kind = "tool-offset",
        .summary = "the offset of a tool (or its reflector) is not what the machine file says",
+       .plain = "A tool, or its reflector, is not where the machine file says.",
+       .usual_causes = "a tool length or radius entered wrongly; a reflector seated otherwise than in its "
+                       "drawing; a nest that is worn or dirty",
        .source = "ISO/TR 16907:2015, 3.2 and 7.1 (functional point)",
        .keys = joined({{text_key("tool", "name of the tool")},
                        vector_amplitude_keys("um", "actual less stated offset, tool coordinates")})},

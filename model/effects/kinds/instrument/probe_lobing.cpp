@@ -96,6 +96,9 @@ const EffectKind& probe_lobing_effect() {
       {.kind = "probe-lobing",
        .summary = "a touch probe triggers after a way that depends on the direction of the contact about the "
                   "tool's axis: two, three or more lobes",
+       .plain = "The touch probe triggers sooner in some directions of contact than in others.",
+       .usual_causes = "a probe that rests on three supports; a long or heavy stylus; a trigger force that "
+                       "is set too high; a stylus ball that is out of round or off centre",
        .source = "ISO 230-10; Estler et al., Precision Engineering 19 (1996) 85 (touch trigger probes)",
        .keys = {{.key = "lobes",
                  .help = "lobes over a turn of the direction; default 3",

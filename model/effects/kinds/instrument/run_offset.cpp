@@ -74,6 +74,9 @@ const EffectKind& run_offset_effect() {
        .summary =
            "the readings of one run are shifted against the other runs of their setup: a counter reset, "
            "a reflector put back",
+       .plain = "One run differs from all others by a constant.",
+       .usual_causes = "a zero that was set anew or lost; a reflector or probe that was touched between "
+                       "runs; a warm-up between runs; a run read with another offset in the control",
        .source = "ISO 230-2 and ISO 230-4 (repeated runs; zero of the reading)",
        .keys = {text_key("setup", "name of the setup"),
                 {.key = "run", .required = true, .help = "number in its column run", .plausible_max = 1e9},

@@ -50,6 +50,10 @@ const EffectKind& tool_clamping_effect() {
       {.kind = "tool-clamping",
        .summary = "the tool, or its reflector, was clamped anew for a setup and sits otherwise than in the "
                   "other setups that carry it",
+       .plain = "The tool sat otherwise in one set-up than in the others.",
+       .usual_causes =
+           "chips or dirt in the taper; a worn pull stud or too little clamping force; a reflector that was "
+           "put back turned; a tool that was not clamped in the same orientation",
        .source = "ISO/TR 16907:2015, 3.2 and 7.1 (functional point)",
        .polynomial = true,
        .keys = joined({{text_key("setup", "name of the setup")},

@@ -246,6 +246,8 @@ const EffectKind& custom_effect() {
       {.kind = "custom",
        .summary = "your own: amplitude times an expression of what was recorded, added to a target; written "
                   "into the model file, never looked for",
+       .plain = "What was written in the model file explains the readings.",
+       .usual_causes = "those that its author had in mind",
        .source = "the user; expressions by muParser (beltoforion.de/en/muparser)",
        .keys = joined(
            {{written_target_key(),
@@ -263,7 +265,12 @@ const EffectKind& custom_effect() {
              {.key = "q_sigma",
               .help = "standard uncertainty of q before the fit; absent = held",
               .plausible_max = 1e9}},
-            amplitude_keys("what is added where the expression is 1")})},
+            amplitude_keys("what is added where the expression is 1")}),
+       .words = {{NamePart::Target, "TARGET",
+                  "as written in the model file: SYMBOL, tool [TOOL] AXIS, station STATION AXIS, COLUMN [of "
+                  "SETUP]"},
+                 {NamePart::Driver, "VARIABLES", "variables of the expression"},
+                 {NamePart::Shape, "EXPRESSION", "the expression"}}},
       make_custom, no_candidates, custom_examples);
   return kind;
 }

@@ -291,38 +291,47 @@ class EmpiricalKind final : public EffectKind {
         .summary =
             "what has no name: a smooth function of one to three recorded variables, found by the "
             "readings alone and added to a target",
+        .plain =
+            "Something acts that no name of the catalogue explains: the readings alone draw it as a smooth "
+            "function.",
+        .usual_causes = "read them off the picture: what changes there, and nowhere else",
         .source =
             "tensor products of cubic B-splines under a Gaussian-process prior (de Boor 1978, ch. XVII; "
             "Rasmussen and Williams 2006, ch. 5)",
-        .keys = {
-            written_target_key(),
-            text_key("drivers",
+        .keys = {written_target_key(),
+                 text_key(
+                     "drivers",
                      "one to three of x y z (mm) a b c (deg) as commanded, t (s since the first reading), "
                      "T_<channel> (degC), length (mm to the station), feed (mm/min), tool_length tool_x "
                      "tool_y tool_z (mm)"),
-            text_key("factor", "what the function is multiplied with: dir_x ... dir_c", false),
-            text_key("only", "where it acts: \"tool NAME\", \"station NAME\" or \"setup NAME\"", false),
-            {.key = "from",
-             .type = KeyType::Numbers,
-             .help = "least value of each driver; absent = of the readings",
-             .plausible_max = 1e9},
-            {.key = "to",
-             .type = KeyType::Numbers,
-             .help = "largest value of each driver; absent = of the readings",
-             .plausible_max = 1e9},
-            {.key = "pieces",
-             .type = KeyType::Numbers,
-             .help = "pieces of the splines of each driver; absent = as many as the readings resolve, at "
-                     "most 24, 6 or 3 for one, two or three drivers",
-             .plausible_max = 1e3},
-            {.key = "coefficients_um",
-             .type = KeyType::Numbers,
-             .help = "identified values, those of the last driver next to each other",
-             .plausible_max = 1e9},
-            {.key = "coefficients_urad",
-             .type = KeyType::Numbers,
-             .help = "the same of a target that turns",
-             .plausible_max = 1e9}}};
+                 text_key("factor", "what the function is multiplied with: dir_x ... dir_c", false),
+                 text_key("only", "where it acts: \"tool NAME\", \"station NAME\" or \"setup NAME\"", false),
+                 {.key = "from",
+                  .type = KeyType::Numbers,
+                  .help = "least value of each driver; absent = of the readings",
+                  .plausible_max = 1e9},
+                 {.key = "to",
+                  .type = KeyType::Numbers,
+                  .help = "largest value of each driver; absent = of the readings",
+                  .plausible_max = 1e9},
+                 {.key = "pieces",
+                  .type = KeyType::Numbers,
+                  .help =
+                      "pieces of the splines of each driver; absent = as many as the readings resolve, at "
+                      "most 24, 6 or 3 for one, two or three drivers",
+                  .plausible_max = 1e3},
+                 {.key = "coefficients_um",
+                  .type = KeyType::Numbers,
+                  .help = "identified values, those of the last driver next to each other",
+                  .plausible_max = 1e9},
+                 {.key = "coefficients_urad",
+                  .type = KeyType::Numbers,
+                  .help = "the same of a target that turns",
+                  .plausible_max = 1e9}},
+        .words = {
+            {NamePart::Shape, "curve", "a smooth function of one variable that the readings alone decide"},
+            {NamePart::Shape, "surface",
+             "a smooth function of two or three variables that the readings alone decide"}}};
     return kSchema;
   }
 

@@ -20,6 +20,12 @@ EffectSchema coupling_schema() {
           .summary =
               "an error motion of one axis depends on the position of another: ram droop EAY(z), cross table "
               "EBX(y), cantilever z^2 and z^3; counted from the other axis's home",
+          .plain =
+              "An error motion of one axis changes with the position of another: the machine bends as it "
+              "moves, and is not a rigid body.",
+          .usual_causes =
+              "the weight of a moving column, table or ram on guideways that give way; an unsupported "
+              "overhang; levelling or foundation that lets the bed twist; clamps that strain the structure",
           .source = "ISO/TR 16907:2015, 7.4.2 (non-rigid behaviour)",
           .polynomial = true,
           .keys = joined({{symbol_key("error motion that changes: EAY, EBX ..."),

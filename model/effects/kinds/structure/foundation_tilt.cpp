@@ -79,6 +79,10 @@ const EffectKind& foundation_tilt_effect() {
            "machine and workpiece tilt against the floor as an axis moves its weight, about the middle "
            "of the travel: trackers on the floor and levels see it, a ball-bar does not; with "
            "instruments of one sort only it is an error motion of the axis next to the workpiece",
+       .plain = "The whole machine tilts against the floor while axes move or time passes, which instruments "
+                "on the floor see as an error.",
+       .usual_causes = "machine feet that are loose or badly levelled; a thin or cracked floor; a vehicle, "
+                       "crane or heavy workpiece beside the machine; an instrument whose stand settles",
        .source = "ISO/TR 16907:2015, 7.4.2 (non-rigid behaviour); ISO 230-1 (levels refer to gravity)",
        .keys = {axis_key("axis", "axis whose position it depends on, counted from home"),
                 {.key = "about",

@@ -128,6 +128,10 @@ const EffectKind& product_coupling_effect() {
   static const FormulaKind kind(
       {.kind = "product-coupling",
        .summary = "an error motion depends on the product of two axes' positions, counted from their homes",
+       .plain = "An error motion changes with two other axes at once, as their product: the machine twists "
+                "as it moves.",
+       .usual_causes = "a ram that leans out of a column which moves itself; a table off its centre on a bed "
+                       "that twists; levelling at one corner",
        .source = "ISO/TR 16907:2015, 7.4.2 (non-rigid behaviour)",
        .polynomial = true,
        .keys = joined(
@@ -144,6 +148,9 @@ const EffectKind& tool_load_effect() {
        .summary =
            "the weight of a tool tilts what carries it: an error motion is larger by this with the tool, or "
            "with every tool in proportion to its length",
+       .plain = "An error motion differs between tools: the machine gives way under a heavy or long one.",
+       .usual_causes = "a heavy tool, head or reflector holder; a spindle or quill that sags when it is out; "
+                       "weak clamping of the head",
        .source = "ISO/TR 16907:2015, 8.6 (workpiece and tool mass)",
        .polynomial = true,
        .keys = joined(

@@ -123,6 +123,10 @@ const EffectKind& tilt_load_effect() {
        .summary =
            "the weight of a table or head that tilts bends what carries it: an error motion of another "
            "axis follows the component of gravity",
+       .plain = "An error motion changes as a table or head tilts: its weight pulls on what carries it in "
+                "another direction.",
+       .usual_causes = "a cradle or head whose centre of gravity is off its axis; a column or ram that "
+                       "yields; a balance that is weak or out of adjustment",
        .source = "ISO/TR 16907:2015, 7.4.2 (non-rigid behaviour) and Figure 9",
        .keys = joined({{symbol_key("error motion that changes: EAZ, EXY ..."),
                         rotary_axis_key("rotary axis that tilts"), tilt_shape_key()},
@@ -139,6 +143,9 @@ const EffectKind& cradle_coupling_effect() {
       {.kind = "cradle-coupling",
        .summary = "an error motion of a rotary axis, once per turn, depends on how far another rotary axis "
                   "tilts it: a table whose bearing yields under its weight",
+       .plain = "An error motion of a rotary axis, once per turn, grows as another rotary axis tilts it.",
+       .usual_causes = "a table bearing that yields under its weight when it stands on edge; a workpiece out "
+                       "of balance; a clamp that lets go",
        .source = "ISO/TR 16907:2015, Figure 9 (error motions of a table at several positions of its cradle)",
        .keys = joined({{symbol_key("error motion of a rotary axis: EAC, EZC ..."),
                         rotary_axis_key("rotary axis that tilts it"), tilt_shape_key()},

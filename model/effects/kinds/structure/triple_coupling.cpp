@@ -112,6 +112,10 @@ const EffectKind& triple_coupling_effect() {
       {.kind = "triple-coupling",
        .summary = "an error motion depends on the product of three positions, of which two may be of one "
                   "axis: a ram that bends more the further its saddle is out, y z^2; counted from home",
+       .plain = "An error motion changes with the product of three positions: the machine bends the more, "
+                "the farther several axes are out at once.",
+       .usual_causes = "a ram that bends out of a saddle which is itself far out; an overhang on a "
+                       "crossbeam; a heavy head on a long ram",
        .source = "ISO/TR 16907:2015, 7.4.2 (non-rigid behaviour)",
        .polynomial = true,
        .keys = joined({{symbol_key("error motion that changes: EAY ..."),

@@ -51,6 +51,10 @@ const EffectKind& common_expansion_effect() {
       {.kind = "common-expansion",
        .summary = "the scales of several axes expand from home by the same coefficient with one temperature; "
                   "counted from 20 degC",
+       .plain = "All axes become longer alike as the machine warms.",
+       .usual_causes =
+           "scales of one material at one temperature; a reference temperature or coefficient that the "
+           "control has wrong for all axes; a length scale of the instrument that follows that temperature",
        .source = "ISO 230-3:2020 (thermal effects); ISO 1:2022 (20 degC)",
        .polynomial = true,
        .keys = {shared_axes_key("axes whose scales are of one material: \"X Y Z\""),

@@ -57,6 +57,9 @@ const EffectKind& common_growth_effect() {
        .summary =
            "the positioning errors of several axes grow alike, in proportion to the distance from home, "
            "towards a final value after the first reading",
+       .plain = "All axes become longer alike after the first reading, fast at first and then slower.",
+       .usual_causes = "a machine that was switched on shortly before it was measured; coolant or hall that "
+                       "reach another temperature; an instrument that warms up",
        .source = "ISO 230-3:2020, 6 (environmental temperature variation), first order",
        .polynomial = true,
        .keys = joined({{shared_axes_key("axes that grow alike: \"X Y Z\"")},

@@ -54,6 +54,9 @@ const EffectKind& lagged_temperature_effect() {
       {.kind = "lagged-temperature",
        .summary = "an error motion shifts with a temperature, but late: a (T1 - 20 degC), T1 follows the "
                   "channel with a time constant from the first reading on",
+       .plain = "An error motion follows a temperature, but hours late: a heavy part takes time to warm.",
+       .usual_causes = "the bed, column or table following the workshop's temperature; sun or a heater on "
+                       "one side; coolant that warms the structure slowly",
        .source = "ISO 230-3 (distortion caused by temperature); first-order lag of a lumped thermal mass",
        .polynomial = true,
        .keys = joined({{symbol_key("error motion that shifts: EAZ ..."),
@@ -70,6 +73,9 @@ const EffectKind& lagged_expansion_effect() {
       {.kind = "lagged-expansion",
        .summary = "spindle or tool follow a temperature late: a (T1 - 20 degC), tool coordinates, T1 follows "
                   "the channel with a time constant from the first reading on",
+       .plain = "Spindle or tool grow with a temperature, but late.",
+       .usual_causes = "a spindle housing that warms through; a tool holder that takes up heat from the "
+                       "bearings; coolant at another temperature than the machine",
        .source = "ISO 230-3 (distortion caused by temperature); first-order lag of a lumped thermal mass",
        .polynomial = true,
        .keys = joined({{text_key("temperature", "channel: column T_<channel>_degC")},

@@ -49,6 +49,10 @@ const EffectKind& temperature_rate_effect() {
            "an error motion follows how fast a temperature changes, as a casting bends while its skin is "
            "warmer than its core: a (T - T1), T1 follows the channel with a time constant tau, so that "
            "slow changes give a tau dT/dt",
+       .plain = "An error motion follows how fast a temperature changes: the structure bends while its skin "
+                "is warmer than its core.",
+       .usual_causes =
+           "a hall door, sun or heating that comes on; coolant that starts; a thick casting with thin ribs",
        .source = kSource,
        .polynomial = true,
        .keys = joined({{symbol_key("error motion that bends: EAZ ..."),
@@ -66,6 +70,9 @@ const EffectKind& tool_rate_effect() {
        .summary =
            "spindle or tool follow how fast a temperature changes: a (T - T1), tool coordinates, T1 follows "
            "the channel with a time constant tau, so that slow changes give a tau dT/dt",
+       .plain = "Spindle or tool move while a temperature changes, and return when it is steady.",
+       .usual_causes = "a spindle housing whose skin warms before its core; a spindle cooler that switches; "
+                       "coolant that starts",
        .source = kSource,
        .polynomial = true,
        .keys = joined({{text_key("temperature", "channel: column T_<channel>_degC")},

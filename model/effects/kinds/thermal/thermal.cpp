@@ -217,6 +217,11 @@ const EffectKind& scale_expansion_effect() {
   static const FormulaKind kind(
       {.kind = "scale-expansion",
        .summary = "the scale of an axis expands with a temperature: alpha (T - 20 degC) per metre from home",
+       .plain = "An axis becomes longer as it warms: its positions are wrong in proportion to the distance "
+                "from home.",
+       .usual_causes =
+           "a scale or screw that follows the workshop's temperature; a thermal expansion coefficient that "
+           "is missing or wrong in the control; a temperature sensor that sits elsewhere than the scale",
        .source = "ISO/TR 16907:2015, 8.3; ISO 230-3 (thermal effects)",
        .polynomial = true,
        .keys = {axis_key("axis", "axis whose scale expands"),
@@ -230,6 +235,9 @@ const EffectKind& thermal_drift_effect() {
   static const FormulaKind kind(
       {.kind = "thermal-drift",
        .summary = "an error motion shifts with a temperature, column and ram tilt above all: a (T - 20 degC)",
+       .plain = "An error motion shifts with a temperature, as the structure bends.",
+       .usual_causes = "a column or ram that warms on one side by motor, sun or draught; a hydraulic unit or "
+                       "cabinet beside the column; a hall whose temperature is layered",
        .source = "ISO 230-3 (distortion caused by temperature)",
        .polynomial = true,
        .keys = joined({{symbol_key("error motion that shifts: EAZ ..."),
@@ -243,6 +251,9 @@ const EffectKind& spindle_growth_effect() {
   static const FormulaKind kind(
       {.kind = "spindle-growth",
        .summary = "the spindle moves the tool as it warms up: a (1 - exp(-t/tau)) from the first reading on",
+       .plain = "The spindle pushes the tool out as it warms up, fast at first and then ever slower.",
+       .usual_causes = "heat of the spindle bearings or motor; measuring before the spindle was warm; a "
+                       "spindle cooler that is off or set wrongly",
        .source = "ISO 230-3 (distortion caused by the rotating spindle)",
        .polynomial = true,
        .keys = joined({shape_keys("time_constant", "s", "tau"),
@@ -255,6 +266,9 @@ const EffectKind& tool_expansion_effect() {
   static const FormulaKind kind(
       {.kind = "tool-expansion",
        .summary = "spindle or tool move with a temperature: a (T - 20 degC), tool coordinates",
+       .plain = "Spindle or tool grow with a temperature.",
+       .usual_causes = "heat of the spindle; coolant or air at another temperature than the machine; a long "
+                       "tool or holder that follows the workshop's temperature",
        .source = "ISO 230-3 (distortion caused by the rotating spindle)",
        .polynomial = true,
        .keys = joined({{text_key("temperature", "channel: column T_<channel>_degC")},
@@ -267,6 +281,9 @@ const EffectKind& screw_heating_effect() {
   static const FormulaKind kind(
       {.kind = "screw-heating",
        .summary = "a ball screw warms up and stretches: a q (1 - exp(-t/tau)), q from home",
+       .plain = "An axis becomes longer the longer it has been moving: its ball screw warms up.",
+       .usual_causes = "fast traverses on an axis that is measured by its motor's encoder; too much preload "
+                       "of nut or bearings; too little grease; a screw cooler that is off",
        .source = "ISO 230-3 (distortion caused by linear motion)",
        .polynomial = true,
        .keys = joined({{axis_key("axis", "axis that the screw drives")},
@@ -281,6 +298,9 @@ const EffectKind& squareness_drift_effect() {
       {.kind = "squareness-drift",
        .summary = "two axes turn against each other slowly: squareness changes in proportion to time or to a "
                   "temperature",
+       .plain = "Two axes turn against each other slowly while the campaign is measured.",
+       .usual_causes = "a column or crossbeam that warms on one side; a machine that settles on its feet; a "
+                       "workpiece or fixture that loads one side",
        .source = "ISO 230-3 (environmental temperature variation)",
        .polynomial = true,
        .keys = {symbol_key("squareness that drifts: EC0Y, EA0Z, EB0Z"),

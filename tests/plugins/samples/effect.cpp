@@ -32,16 +32,21 @@ std::vector<EffectSpec> samples(const Campaign& campaign) {
 }  // namespace
 
 const EffectKind& sample_effect() {
-  static const FormulaKind kind({.kind = "sample",
-                                 .summary = "the cover of an axis pulls where it is folded",
+  static const FormulaKind kind(
+      {.kind = "sample",
+       .summary = "the cover of an axis pulls where it is folded",
+       .plain = "The cover of an axis pulls at it where it is folded.",
+       .usual_causes = "a cover that has no grease; a cover of another machine",
 #ifdef VOLCAL_WRONG_SAMPLE
-                                 .source = "",
+       .source = "",
 #else
-                                 .source = "a sample of a test",
+       .source = "a sample of a test",
 #endif
-                                 .keys = joined({{symbol_key("error motion")},
-                                                 motion_amplitude_keys({""}, "pull of the folded cover")})},
-                                make_sample, samples);
+       .keys =
+           joined({{symbol_key("error motion")}, motion_amplitude_keys({""}, "pull of the folded cover")}),
+       .words = {{NamePart::Shape, "exponential", "less the farther it is from home"}},
+       .simulated = false},
+      make_sample, samples);
   return kind;
 }
 

@@ -11,7 +11,8 @@ const InstrumentSchema kSampleSchema = {
     .source = "a sample of a test",
     .keys = {},
     .column_sets = {{{.column = "gauge_um", .help = "displacement along x", .plausible_max = 1e6}}},
-    .noise_keys = length_noise_keys()};
+    .noise_keys = length_noise_keys(),
+    .simulated = false};
 
 class SampleSetup final : public EquationBase<SampleSetup> {
  public:

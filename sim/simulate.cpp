@@ -109,7 +109,7 @@ Campaign validation_campaign(const Study& study, const TruthMachine& truth, cons
     }
     SetupPlan plan;
     plan.name = "truth_" + tool;
-    plan.instrument = "volumetric-points";
+    plan.instrument = kVolumetricPoints;
     plan.tool = *index;
     RandomStream random(study.seed, "validation points " + tool);
     plan.points = random_points(study.machine, study.validation.points, random, rotary);

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "volcal/sim/hidden/hidden_settings.h"
+#include "volcal/sim/measurement/simulated_instruments.h"
 
 namespace volcal::sim {
 namespace {
@@ -99,11 +100,11 @@ void beam_cosine(const HiddenSettings& settings, HiddenScene& scene) {
 }
 
 void encoder_eccentricity(const HiddenSettings& settings, HiddenScene& scene) {
-  const std::size_t encoder = settings.text("encoder", "azimuth") == "azimuth" ? 1 : 2;
   scene.interference.reading.emplace_back([a = settings.amplitude(), phase = settings.number("phase", 0.0),
-                                           here = settings.where(), encoder](
+                                           here = settings.where(),
+                                           encoder = settings.text("encoder", "azimuth")](
                                               const Occasion& occasion, std::size_t channel, double angle) {
-    const bool applies = occasion.plan.instrument == "laser-tracker" && channel == encoder && here(occasion);
+    const bool applies = reads_encoder(occasion.plan, channel, encoder) && here(occasion);
     return applies ? a * std::sin(angle + phase) : 0.0;
   });
 }

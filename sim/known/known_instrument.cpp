@@ -1,10 +1,8 @@
 // Effects of instruments, stations and tools.
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 
 #include "volcal/sim/known/known_kinds.h"
+#include "volcal/sim/measurement/simulated_instruments.h"
 
 namespace volcal::sim {
 namespace {
@@ -61,11 +59,6 @@ void known_bar_length(const HiddenSettings& settings, HiddenScene& scene) {
       });
 }
 
-bool is_laser(const SetupPlan& plan) {
-  constexpr std::array<std::string_view, 3> kLasers = {"displacement", "laser-tracer", "laser-tracker"};
-  return std::ranges::find(kLasers, plan.instrument) != kLasers.end();
-}
-
 /// By a temperature, or by the time since the setup's first reading.
 void known_dead_path(const HiddenSettings& settings, HiddenScene& scene) {
   using Driver = std::function<double(const Occasion& occasion)>;
@@ -77,7 +70,7 @@ void known_dead_path(const HiddenSettings& settings, HiddenScene& scene) {
   scene.interference.reading.emplace_back(
       [a = amplitude_of(settings), here = settings.where(), driver](const Occasion& occasion,
                                                                     std::size_t channel, double /*value*/) {
-        const bool acts = channel == 0 && is_laser(occasion.plan) && here(occasion);
+        const bool acts = channel == 0 && simulated_instrument(occasion.plan).is_laser && here(occasion);
         return acts ? a * driver(occasion) : 0.0;
       });
 }
@@ -91,13 +84,13 @@ void known_beam_misalignment(const HiddenSettings& settings, HiddenScene& scene)
 }
 
 void known_encoder_eccentricity(const HiddenSettings& settings, HiddenScene& scene) {
-  const std::size_t encoder = settings.text("encoder", "azimuth") == "azimuth" ? 1 : 2;
-  scene.interference.reading.emplace_back(
-      [of_cosine = settings.number("cos", 0.0), of_sine = settings.number("sin", 0.0),
-       here = settings.where(), encoder](const Occasion& occasion, std::size_t channel, double angle) {
-        const bool acts = occasion.plan.instrument == "laser-tracker" && channel == encoder && here(occasion);
-        return acts ? of_cosine * std::cos(angle) + of_sine * std::sin(angle) : 0.0;
-      });
+  scene.interference.reading.emplace_back([of_cosine = settings.number("cos", 0.0),
+                                           of_sine = settings.number("sin", 0.0), here = settings.where(),
+                                           encoder = settings.text("encoder", "azimuth")](
+                                              const Occasion& occasion, std::size_t channel, double angle) {
+    const bool acts = reads_encoder(occasion.plan, channel, encoder) && here(occasion);
+    return acts ? of_cosine * std::cos(angle) + of_sine * std::sin(angle) : 0.0;
+  });
 }
 
 void known_run_offset(const HiddenSettings& settings, HiddenScene& scene) {

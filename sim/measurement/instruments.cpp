@@ -1,207 +1,17 @@
 #include "volcal/sim/measurement/instruments.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <string_view>
 
 #include "volcal/sim/machine/random.h"
 #include "volcal/sim/machine/transforms.h"
-#include "volcal/sim/measurement/measurements.h"
 #include "volcal/sim/measurement/noise.h"
-#include "volcal/sim/measurement/rotary_poses.h"
+#include "volcal/sim/measurement/simulated_instruments.h"
 
 namespace volcal::sim {
 namespace {
-
-constexpr int kMaxChannels = 3;
-constexpr std::size_t kContactColumns = 1;  ///< column set of tip and normal
-
-/// Directions and origins of a setup, from its commanded points.
-struct SetupGeometry {
-  Eigen::Vector3d first_w = Eigen::Vector3d::Zero();
-  Eigen::Vector3d line_w = Eigen::Vector3d::Zero();  ///< unit; zero when all points coincide
-  Eigen::Vector3d centroid_w = Eigen::Vector3d::Zero();
-};
-
-using Channels = std::array<double, kMaxChannels>;
-
-/// One reading without noise, and the standard deviation of its independent noise.
-struct Reading {
-  Channels value{};
-  Channels sigma{};
-  std::size_t channels = 1;
-};
-
-/// What a reading is taken of.
-struct Sighting {
-  const SetupPlan& plan;
-  const InstrumentTruth& instrument;
-  const SetupGeometry& geometry;
-  const TruthMachine& machine;
-  const MachineState& state;
-  std::int32_t line;
-  Eigen::Vector3d point_w;
-  Eigen::Vector3d nominal_w;
-  const CommandedPoint& commanded;
-  Eigen::Vector3d nominal_tool;  ///< offset
-
-  double sigma(double length) const { return std::hypot(plan.noise.constant, plan.noise.per_metre * length); }
-  double offset() const {
-    const auto found = instrument.line_offset.find(line);
-    return found == instrument.line_offset.end() ? instrument.offset : found->second;
-  }
-  Eigen::Vector3d direction(const char* key) const {
-    const auto given = plan.options.vector(key);
-    return given ? given->normalized() : geometry.line_w;
-  }
-  Eigen::Vector3d from_station() const {
-    const Eigen::Matrix4d& floor = instrument.floor;
-    return floor.topLeftCorner<3, 3>() * point_w + floor.topRightCorner<3, 1>() - instrument.station;
-  }
-};
-
-Reading read_tracer(const Sighting& sighting) {
-  const InstrumentTruth& truth = sighting.instrument;
-  const double distance = sighting.from_station().norm();
-  return {{distance * (1.0 + truth.length_scale) - truth.dead_path}, {sighting.sigma(distance)}};
-}
-
-Reading read_tracker(const Sighting& sighting) {
-  const InstrumentTruth& truth = sighting.instrument;
-  const Eigen::Matrix3d rotation = rotation_321(truth.station_rotation).topLeftCorner<3, 3>();
-  const Eigen::Vector3d v = rotation.transpose() * sighting.from_station();
-  const double angle = sighting.plan.noise.angle;
-  return {{v.norm() * (1.0 + truth.length_scale), std::atan2(v.y(), v.x()),
-           std::atan2(v.z(), std::hypot(v.x(), v.y()))},
-          {sighting.sigma(v.norm()), angle, angle},
-          3};
-}
-
-Reading read_ball_bar(const Sighting& sighting) {
-  const InstrumentTruth& truth = sighting.instrument;
-  const double distance = (sighting.point_w - truth.centre).norm();
-  return {{distance + truth.length_error}, {sighting.sigma(distance)}};
-}
-
-/// Coordinate direction most nearly across a beam, made exactly so.
-Eigen::Vector3d across(const Eigen::Vector3d& beam) {
-  Eigen::Index least = 0;
-  beam.cwiseAbs().minCoeff(&least);
-  return (Eigen::Vector3d::Unit(least) - beam[least] * beam).normalized();
-}
-
-Reading read_displacement(const Sighting& sighting) {
-  const Eigen::Vector3d beam = sighting.direction("direction");
-  const double angle = sighting.instrument.beam_angle;
-  const Eigen::Vector3d actual_beam =
-      angle == 0.0 ? beam : Eigen::Vector3d(std::cos(angle) * beam + std::sin(angle) * across(beam));
-  const double along = actual_beam.dot(sighting.point_w - sighting.geometry.first_w);
-  const double commanded = beam.dot(sighting.nominal_w - sighting.geometry.first_w);
-  const double shown = along * (1.0 + sighting.instrument.length_scale) + sighting.offset();
-  return {{sighting.plan.column_set == 1 ? shown - commanded : shown}, {sighting.sigma(commanded)}};
-}
-
-Reading read_straightness(const Sighting& sighting) {
-  const Eigen::Vector3d direction = sighting.direction("direction");
-  const Eigen::Vector3d& along = sighting.geometry.line_w;
-  const double distance = along.dot(sighting.nominal_w - sighting.geometry.first_w);
-  const double reference = direction.dot(sighting.instrument.artefact_rotation.cross(along)) * distance;
-  return {{direction.dot(sighting.point_w - sighting.geometry.first_w) - reference + sighting.offset()},
-          {sighting.sigma(distance)}};
-}
-
-Reading read_angle(const Sighting& sighting) {
-  const std::string body = sighting.plan.options.text("body").value_or("relative");
-  Eigen::Vector3d rotation = body == "table"  ? sighting.machine.table_rotation(sighting.state)
-                             : body == "tool" ? sighting.machine.tool_rotation(sighting.state)
-                                              : sighting.machine.relative_rotation(sighting.state);
-  if (body != "relative") rotation += rotation_vector(sighting.instrument.floor.topLeftCorner<3, 3>());
-  return {{rotation.dot(sighting.direction("axis")) + sighting.offset()}, {sighting.sigma(0.0)}};
-}
-
-Reading read_volumetric_points(const Sighting& sighting) {
-  const RigidMotion& alignment = sighting.instrument.alignment;
-  const Eigen::Vector3d error = sighting.point_w - sighting.nominal_w + alignment.translation +
-                                alignment.rotation.cross(sighting.nominal_w);
-  const double sigma = sighting.sigma((sighting.nominal_w - sighting.geometry.centroid_w).norm());
-  return {{error.x(), error.y(), error.z()}, {sigma, sigma, sigma}, 3};
-}
-
-Reading read_r_test(const Sighting& sighting) {
-  const std::string frame = sighting.plan.options.text("frame").value_or("workpiece");
-  const Eigen::Matrix3d axes_w = axes_of_frame(sighting.machine, sighting.state, frame);
-  const Eigen::Vector3d shown =
-      axes_w.transpose() * (sighting.point_w - sighting.nominal_w) + sighting.instrument.sphere;
-  const double sigma = sighting.sigma(0.0);
-  return {{shown.x(), shown.y(), shown.z()}, {sigma, sigma, sigma}, 3};
-}
-
-/// The axes where the tip has gone on by `along` the normal.
-CommandedPoint gone_on(const TruthMachine& machine, const Eigen::Vector3d& nominal_tool,
-                       const CommandedPoint& point, double along) {
-  return Follower(machine, nominal_tool).moved(point, along * point.normal_w);
-}
-
-/// How far along its normal the tip goes on from the commanded point until it touches.
-Reading read_contact(const Sighting& sighting) {
-  constexpr int kSteps = 4;  // each leaves a share of 1e-4 or so: errors change little over the way
-  const InstrumentTruth& truth = sighting.instrument;
-  const Eigen::Vector3d& normal_w = sighting.commanded.normal_w;
-  const Eigen::Vector3d error_here =
-      sighting.machine.point_error(sighting.state, sighting.nominal_tool);  // without tool and repeatability
-  const Eigen::Vector3d other_w = sighting.point_w - sighting.nominal_w - error_here;
-  double along = 0.0;
-  for (int step = 0; step < kSteps; ++step) {
-    MachineState state = sighting.state;
-    state.position = gone_on(sighting.machine, sighting.nominal_tool, sighting.commanded, along).position;
-    const Eigen::Vector3d error_w = sighting.machine.point_error(state, sighting.nominal_tool) + other_w;
-    along = normal_w.dot(truth.sphere - sighting.nominal_w - error_w) + truth.contact_radius;
-  }
-  return {{along}, {sighting.sigma(0.0)}};
-}
-
-bool reads_contacts(const SetupPlan& plan) {
-  return plan.instrument == kProbedSphere && plan.column_set == kContactColumns;
-}
-
-Reading read_probed_sphere(const Sighting& sighting) {
-  if (reads_contacts(sighting.plan)) return read_contact(sighting);
-  const Eigen::Vector3d centre = sighting.instrument.sphere - (sighting.point_w - sighting.nominal_w);
-  const double sigma = sighting.sigma(0.0);
-  return {{centre.x(), centre.y(), centre.z()}, {sigma, sigma, sigma}, 3};
-}
-
-using ReadFunction = Reading (*)(const Sighting&);
-struct SimulatedInstrument {
-  std::string_view name;
-  ReadFunction read;
-  std::vector<std::vector<std::string_view>> columns;  ///< in files, by column set
-};
-
-const std::vector<SimulatedInstrument>& simulated_instruments() {
-  static const std::vector<SimulatedInstrument> kInstruments = {
-      {"laser-tracer", read_tracer, {{"length_mm"}}},
-      {"laser-tracker", read_tracker, {{"length_mm", "azimuth_deg", "elevation_deg"}}},
-      {"ball-bar", read_ball_bar, {{"length_mm"}}},
-      {"displacement", read_displacement, {{"displacement_mm"}, {"deviation_um"}}},
-      {"straightness", read_straightness, {{"deviation_um"}}},
-      {"angle", read_angle, {{"angle_urad"}}},
-      {"volumetric-points", read_volumetric_points, {{"ex_um", "ey_um", "ez_um"}}},
-      {kRTest, read_r_test, {{"dx_um", "dy_um", "dz_um"}}},
-      {kProbedSphere, read_probed_sphere, {{"cx_mm", "cy_mm", "cz_mm"}, {"reach_mm"}}},
-  };
-  return kInstruments;
-}
-
-ReadFunction find_instrument(const std::string& name) {
-  for (const SimulatedInstrument& instrument : simulated_instruments()) {
-    if (instrument.name == name) return instrument.read;
-  }
-  throw std::invalid_argument("instrument " + name + " is not simulated");
-}
 
 /// How far each axis has gone since it last turned round. It comes to its first point from far. Where it
 /// moves against the direction in which it reaches a point, or turns on the spot, it overruns the point and
@@ -240,10 +50,6 @@ std::array<double, kAxisCount> farthest_since_turning(const SetupPlan& plan) {
     }
   }
   return farthest;
-}
-
-bool is_at_station(const SetupPlan& plan) {
-  return plan.instrument == "laser-tracer" || plan.instrument == "laser-tracker";
 }
 
 MachineState state_at(const CommandedPoint& point, const SetupPlan& plan,
@@ -305,9 +111,10 @@ void append_point(const CommandedPoint& point, const MachineState& state, const 
 Options noise_options(const SetupPlan& plan) {
   Options noise;
   noise.set("constant", plan.noise.constant);
-  if (plan.instrument == "angle") return noise;
+  const SimulatedInstrument& instrument = simulated_instrument(plan);
+  if (instrument.reads_angle) return noise;
   noise.set("per_metre", plan.noise.per_metre);
-  if (plan.instrument == "laser-tracker") noise.set("angle", plan.noise.angle);
+  if (!instrument.encoders.empty()) noise.set("angle", plan.noise.angle);
   return noise;
 }
 
@@ -318,21 +125,14 @@ class Measurer {
       : plan_(plan),
         conditions_(conditions),
         first_time_(first_time),
-        read_(find_instrument(plan.instrument)),
+        instrument_(simulated_instrument(plan)),
         geometry_(geometry_of(plan, conditions)) {}
 
   /// Nominal, to the station or the centre of a bar, or along a line.
   double length(const MachineState& state) const {
     const TruthMachine& truth = conditions_.machine;
     const Eigen::Vector3d nominal_w = truth.nominal_point(state, truth.machine().tools.at(plan_.tool).offset);
-    if (is_at_station(plan_)) return (nominal_w - plan_.truth.station).norm();
-    if (plan_.instrument == "ball-bar") return (nominal_w - plan_.truth.centre).norm();
-    if (plan_.instrument == "volumetric-points") return (nominal_w - geometry_.centroid_w).norm();
-    if (plan_.instrument == "straightness")
-      return std::abs(geometry_.line_w.dot(nominal_w - geometry_.first_w));
-    if (plan_.instrument != "displacement") return 0.0;
-    const Eigen::Vector3d beam = plan_.options.vector("direction").value_or(geometry_.line_w).normalized();
-    return std::abs(beam.dot(nominal_w - geometry_.first_w));
+    return instrument_.length(plan_, geometry_, nominal_w);
   }
 
   /// Without the instrument's noise; `repeatability` is the machine's.
@@ -347,9 +147,9 @@ class Measurer {
       for (const auto& change : conditions_.interference->instrument) change(occasion, instrument);
     }
     const Eigen::Vector3d& nominal_tool = truth.machine().tools.at(plan_.tool).offset;
-    Reading reading = read_({plan_, instrument, geometry_, truth, state, point.line,
-                             truth.point(state, tool) + repeatability,
-                             truth.nominal_point(state, nominal_tool), point, nominal_tool});
+    Reading reading = instrument_.read({plan_, instrument, geometry_, truth, state, point.line,
+                                        truth.point(state, tool) + repeatability,
+                                        truth.nominal_point(state, nominal_tool), point, nominal_tool});
     if (!conditions_.interference) return reading;
     const Channels undisturbed = reading.value;
     for (const auto& error : conditions_.interference->reading) {
@@ -364,9 +164,11 @@ class Measurer {
   const SetupPlan& plan_;
   const MeasuringConditions& conditions_;
   double first_time_;
-  ReadFunction read_;
+  const SimulatedInstrument& instrument_;
   SetupGeometry geometry_;
 };
+
+bool reads_contacts(const SetupPlan& plan) { return simulated_instrument(plan).contacts == plan.column_set; }
 
 /// What the file says of one reading: where the axes stood, and the columns.
 struct Record {
@@ -401,9 +203,10 @@ Setup described(const SetupPlan& plan) {
   return setup;
 }
 
-/// Tracker's angles are not moved by the machine's repeatability as lengths are.
+/// Encoders' angles are not moved by the machine's repeatability as lengths are.
 double independent_sigma(const SetupPlan& plan, const Reading& reading, std::size_t channel) {
-  const bool is_length = plan.instrument != "angle" && (plan.instrument != "laser-tracker" || channel == 0);
+  const SimulatedInstrument& instrument = simulated_instrument(plan);
+  const bool is_length = !instrument.reads_angle && instrument.encoder(channel, plan.column_set).empty();
   return std::hypot(reading.sigma[channel], is_length ? plan.noise.repeatability : 0.0);
 }
 
@@ -420,12 +223,10 @@ void give_contacts(Readings& readings) {
 }  // namespace
 
 std::string column_read(const SetupPlan& plan, std::size_t channel) {
-  for (const SimulatedInstrument& instrument : simulated_instruments()) {
-    if (instrument.name != plan.instrument || plan.column_set >= instrument.columns.size()) continue;
-    const auto& columns = instrument.columns[plan.column_set];
-    if (channel < columns.size()) return std::string(columns[channel]);
-  }
-  return {};
+  const SimulatedInstrument* instrument = find_simulated(plan.instrument);
+  if (instrument == nullptr || plan.column_set >= instrument->columns.size()) return {};
+  const auto& columns = instrument->columns[plan.column_set];
+  return channel < columns.size() ? std::string(columns[channel]) : std::string();
 }
 
 Setup measure(const SetupPlan& plan, const MeasuringConditions& conditions, double start_time) {

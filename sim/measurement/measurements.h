@@ -16,9 +16,13 @@
 
 namespace volcal::sim {
 
+/// Instruments of the measurements below.
 inline constexpr const char* kLaserTracer = "laser-tracer";
 inline constexpr const char* kLaserTracker = "laser-tracker";
 inline constexpr const char* kBallBar = "ball-bar";
+inline constexpr const char* kDisplacementReader = "displacement";
+inline constexpr const char* kStraightnessReader = "straightness";
+inline constexpr const char* kAngleReader = "angle";
 inline constexpr const char* kVolumetricPoints = "volumetric-points";
 inline constexpr const char* kRTest = "r-test";
 inline constexpr const char* kProbedSphere = "probed-sphere";
@@ -37,7 +41,7 @@ struct Tracking {
     std::string tool;
     std::vector<CommandedPoint> points = {};  ///< in place of a grid
   };
-  std::string instrument = kLaserTracer;  ///< or kLaserTracker
+  std::string instrument = kLaserTracer;  ///< one that has a station
   std::vector<Station> stations;
   std::vector<Run> runs;
   int revisits = 0;  ///< how often the list of runs is gone through again

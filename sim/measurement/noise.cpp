@@ -5,7 +5,7 @@
 #include <string>
 
 #include "volcal/sim/machine/random.h"
-#include "volcal/sim/measurement/measurements.h"
+#include "volcal/sim/measurement/simulated_instruments.h"
 
 namespace volcal::sim {
 namespace {
@@ -55,14 +55,12 @@ std::vector<std::int8_t> outliers(const SetupPlan& plan, std::size_t channel, st
 }  // namespace
 
 std::size_t channels_of(const SetupPlan& plan) {
-  const std::string& instrument = plan.instrument;
-  if (instrument == kProbedSphere) return plan.column_set == 0 ? 3 : 1;
-  return instrument == kLaserTracker || instrument == kVolumetricPoints || instrument == kRTest ? 3 : 1;
+  return simulated_instrument(plan).channels(plan.column_set);
 }
 
 CorrelatedNoise::CorrelatedNoise(const SetupPlan& plan, std::uint64_t seed) {
   const std::size_t channels = channels_of(plan);
-  const std::size_t lengths = plan.instrument == "laser-tracker" ? 1 : channels;
+  const std::size_t lengths = simulated_instrument(plan).channels_before_encoders(plan.column_set);
   if (plan.noise.drift > 0.0 || plan.noise.line > 0.0) {
     for (std::size_t channel = 0; channel < lengths; ++channel) {
       slow_.push_back(drift(plan, channel, seed));

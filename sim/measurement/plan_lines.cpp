@@ -63,7 +63,7 @@ std::string diagonal_name(const std::array<bool, 3>& moves, unsigned corner) {
 SetupPlan plan_diagonal(const Diagonals& settings, const PlanContext& context, const std::string& kind,
                         const std::array<bool, 3>& moves, unsigned corner) {
   const std::string name = (settings.steps ? "step_" : "") + kind + "_" + diagonal_name(moves, corner);
-  SetupPlan plan = new_plan(name, "displacement", settings, context);
+  SetupPlan plan = new_plan(name, kDisplacementReader, settings, context);
   const LineEnds ends = diagonal(context.machine, settings, moves, corner);
   plan.points =
       settings.steps
@@ -84,7 +84,7 @@ template <class Settings>
 SetupPlan plan_straightness_line(const std::string& name, AxisName axis, AxisName across,
                                  const Eigen::Vector3d& rotation, const Settings& settings,
                                  const PlanContext& context) {
-  SetupPlan plan = new_plan(name, "straightness", settings, context);
+  SetupPlan plan = new_plan(name, kStraightnessReader, settings, context);
   const LineEnds ends = axis_line(context.machine, axis, settings.at);
   plan.points = straight_path(ends.start, ends.end, settings.points, settings.runs, true);
   plan.options.set("direction", unit(across));
@@ -100,7 +100,7 @@ SetupPlan plan_rotary_angle(AxisName axis, const AngleLines& settings, const Pla
   if (settings.body != "relative")
     context.fail(std::string("the angle of the rotary axis ") + letter_of(axis) + " is asked for of one body",
                  "leave body out: it is read between table and tool");
-  SetupPlan plan = new_plan(std::string("angle_") + letter_of(axis), "angle", settings, context);
+  SetupPlan plan = new_plan(std::string("angle_") + letter_of(axis), kAngleReader, settings, context);
   const LineEnds ends = axis_line(context.machine, axis, settings.at);
   plan.points = straight_path(ends.start, ends.end, settings.points, settings.runs, true);
   plan.options.set("axis", rotary_direction_w(TruthMachine(context.machine), ends.start, axis));
@@ -146,7 +146,7 @@ std::vector<SetupPlan> plan_axis_lines(const AxisLines& settings, const PlanCont
   std::vector<SetupPlan> plans;
   for (const AxisName axis : axes_of(settings.axes, context)) {
     require_linear_axis(axis, context);
-    SetupPlan plan = new_plan(std::string("line_") + letter_of(axis), "displacement", settings, context);
+    SetupPlan plan = new_plan(std::string("line_") + letter_of(axis), kDisplacementReader, settings, context);
     const LineEnds ends = axis_line(context.machine, axis, settings.at);
     plan.points = straight_path(ends.start, ends.end, settings.points, settings.runs, true);
     plan.options.set("direction", unit(axis));
@@ -213,7 +213,7 @@ std::vector<SetupPlan> plan_angles(const AngleLines& settings, const PlanContext
     for (const AxisName about : kLinearAxes) {
       const std::string name = std::string("angle_") + letter_of(axis) + "_about_" +
                                static_cast<char>(letter_of(about) - 'X' + 'x');
-      SetupPlan plan = new_plan(name, "angle", settings, context);
+      SetupPlan plan = new_plan(name, kAngleReader, settings, context);
       plan.points = straight_path(ends.start, ends.end, settings.points, settings.runs, true);
       plan.options.set("axis", unit(about));
       plan.options.set("body", settings.body);

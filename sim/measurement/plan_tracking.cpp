@@ -4,6 +4,7 @@
 #include "volcal/sim/machine/truth_machine.h"
 #include "volcal/sim/measurement/paths.h"
 #include "volcal/sim/measurement/plan_tools.h"
+#include "volcal/sim/measurement/simulated_instruments.h"
 
 namespace volcal::sim {
 namespace {
@@ -33,6 +34,14 @@ std::vector<Tracking::Station> standard_stations(const Machine& machine) {
     stations.push_back({"P" + std::to_string(stations.size() + 1), station_w});
   }
   return stations;
+}
+
+std::string names_with_station() {
+  std::string names;
+  for (const SimulatedInstrument& instrument : simulated_instruments()) {
+    if (instrument.has_station) names += (names.empty() ? "" : " or ") + std::string(instrument.name);
+  }
+  return names;
 }
 
 /// Two runs per station, so that each tool is seen from at least two stations.
@@ -115,7 +124,8 @@ class TrackingPlanner {
     }
     plan.truth.station = station.position_w;
     plan.truth.length_scale = length_scale_;
-    if (settings_.instrument == kLaserTracer) {
+    const bool has_frame = !find_simulated(settings_.instrument)->encoders.empty();
+    if (!has_frame) {  // its lengths count from a zero
       const CommandedPoint& first = plan.points.front();
       const Eigen::Vector3d start_w = nominal_.nominal_point({first.position, first.direction, 0.0, {}},
                                                              context_.machine.tools[plan.tool].offset);
@@ -152,9 +162,9 @@ class TrackingPlanner {
 }  // namespace
 
 std::vector<SetupPlan> plan_tracking(const Tracking& settings, const PlanContext& context) {
-  if (settings.instrument != kLaserTracer && settings.instrument != kLaserTracker) {
-    context.fail("\"" + settings.instrument + "\" does not track", "use laser-tracer or laser-tracker");
-  }
+  const SimulatedInstrument* instrument = find_simulated(settings.instrument);
+  if (instrument == nullptr || !instrument->has_station)
+    context.fail("\"" + settings.instrument + "\" does not track", "use " + names_with_station());
   return TrackingPlanner(settings, context).plans();
 }
 

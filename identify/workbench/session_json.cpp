@@ -12,6 +12,7 @@
 #include "volcal/identify/words/sentences.h"
 #include "volcal/identify/workbench/columns.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/effects/kinds/open/empirical.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/instruments/registry.h"
 #include "volcal/model/observation/channels.h"
@@ -158,7 +159,7 @@ Json effect_json(const EffectFinding& effect) {
           {"gain", number(effect.gain)},
           {"visible", number(effect.visible_fraction)},
           {"formula", written_formula(effect.spec)},
-          {"surface", effect.name.kind == "empirical"},
+          {"surface", is_surface(effect.name)},
           {"can_be_added", !effect.resolution && !is_hidden(effect)}};
 }
 

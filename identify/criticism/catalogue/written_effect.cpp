@@ -10,6 +10,7 @@
 #include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/kinds/open/custom.h"
+#include "volcal/model/effects/kinds/open/empirical.h"
 #include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/effects/registry.h"
 
@@ -131,7 +132,7 @@ EffectSpec written_surface(const std::string& option, const std::string& text) {
     std::string& list = variable && variable->kind == Variable::Kind::Direction ? factor : drivers;
     list += (list.empty() ? "" : " ") + word;
   }
-  EffectSpec spec = effect_spec("empirical", {{"target", target.text}, {"drivers", drivers}});
+  EffectSpec spec = surface_spec(target.text, drivers);
   if (!factor.empty()) spec.options.set("factor", factor);
   try {
     find_effect(spec.kind)->make(spec, {});
@@ -146,9 +147,7 @@ WrittenEffect written_effect(const std::string& option, const std::string& text,
                              const std::vector<std::string>& parameters) {
   const auto [target, expression] = parted(option, text);
   WrittenEffect effect;
-  effect.spec.kind = "custom";
-  effect.spec.options.set("target", target.text);
-  effect.spec.options.set("expression", expression.text);
+  effect.spec = written_spec(target.text, expression.text);
   try {
     set_parameters(option, text, expression, parameters, effect.spec);
   } catch (const ExpressionError& error) {

@@ -15,6 +15,8 @@
 #include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/criticism/search/surface_search.h"
 #include "volcal/identify/statistics/chi_squared.h"
+#include "volcal/model/effects/kinds/open/custom.h"
+#include "volcal/model/effects/kinds/open/empirical.h"
 #include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/effects/registry.h"
 
@@ -231,8 +233,8 @@ class FormulaSearch {
   EffectSpec spec_of(const Law& law) const {
     std::vector<std::string> parts = written_names(factors());
     if (const std::string product = law.expression(); !product.empty()) parts.push_back(product);
-    EffectSpec spec = effect_spec("custom", {{"target", *surface_.options.text("target")},
-                                             {"expression", fmt::format("{}", fmt::join(parts, " * "))}});
+    EffectSpec spec =
+        written_spec(*surface_.options.text("target"), fmt::format("{}", fmt::join(parts, " * ")));
     static const std::vector<std::string> kNames = {"p", "q"};
     std::size_t at = 0;
     for (const LawFactor& factor : law.factors) {
@@ -246,7 +248,8 @@ class FormulaSearch {
   }
 
   std::unique_ptr<Effect> effect_of(const Law& law) const {
-    return find_effect("custom")->make(spec_of(law), {});
+    const EffectSpec spec = spec_of(law);
+    return find_effect(spec.kind)->make(spec, {});
   }
 
   FormulaFinding finding(const Law& law) const {
@@ -309,7 +312,7 @@ std::vector<FormulaFinding> formulas_for(const ModelState& state, std::size_t su
 }
 
 bool is_same_function(const EffectSpec& surface, const EffectSpec& other) {
-  const EffectKind& kind = *find_effect("empirical");
+  const EffectKind& kind = empirical_effect();
   return kind.make(surface, {})->name().target == kind.make(other, {})->name().target &&
          sorted_names(surface, "drivers") == sorted_names(other, "drivers") &&
          sorted_names(surface, "factor") == sorted_names(other, "factor");
@@ -320,13 +323,13 @@ void check_asked_surface(const LinearModel& model, const EffectSpec& surface) {
     throw InputError({}, "laws cannot be looked for where an effect acts in a part of the campaign alone",
                      "leave out only = ...");
   }
-  const EffectKind& kind = *find_effect("empirical");
+  const EffectKind& kind = empirical_effect();
   kind.make(surface, {})->check(model.campaign(), {});
   kind.resolved(surface, model.views(), {});
 }
 
 AskedLaws asked_laws(const ModelState& state, const EffectSpec& surface) {
-  const EffectKind& kind = *find_effect("empirical");
+  const EffectKind& kind = empirical_effect();
   EffectSpec spec = kind.resolved(surface, state.model().views(), {});
   std::shared_ptr<const Effect> effect = kind.make(spec, {});
   std::shared_ptr<const Projector> projector;

@@ -9,14 +9,13 @@
 #include "volcal/identify/solve/priors/evidence.h"
 #include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect_keys.h"
-#include "volcal/model/effects/registry.h"
+#include "volcal/model/effects/kinds/open/empirical.h"
 #include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
 
 constexpr std::size_t kMostFindings = 4;
-constexpr const char* kEmpirical = "empirical";
 
 /// What variables of a scan are in the table of an empirical effect.
 struct Table {
@@ -85,11 +84,11 @@ std::optional<EffectSpec> spec_for(const LinearModel& model, const UnknownFindin
   for (const Variable& variable : variables) table.add(variable);
   const std::string target = target_of(model.campaign(), finding, table);
   if (target.empty() || table.drivers.empty() || !table.complete) return std::nullopt;
-  EffectSpec spec = effect_spec(kEmpirical, {{"target", target}, {"drivers", written_list(table.drivers)}});
+  EffectSpec spec = surface_spec(target, written_list(table.drivers));
   if (!table.factors.empty()) spec.options.set("factor", written_list(table.factors));
   if (!table.only.empty() && !table.moves_station(finding)) spec.options.set("only", table.only);
   try {
-    return find_effect(kEmpirical)->resolved(spec, model.views(), {});
+    return empirical_effect().resolved(spec, model.views(), {});
   } catch (const InputError&) {
     return std::nullopt;  // a driver that does not change where the effect acts
   }
@@ -182,7 +181,7 @@ std::optional<SurfaceTest> best_surface(const ModelState& state,
   for (std::size_t k = 0; k < all.size(); ++k) {
     const UnknownFinding& finding = all[k];
     for (EffectSpec& spec : surfaces_for(state.model(), finding)) {
-      std::shared_ptr<const Effect> effect = find_effect(kEmpirical)->make(spec, {});
+      std::shared_ptr<const Effect> effect = empirical_effect().make(spec, {});
       if (std::ranges::find(tried, effect->name()) != tried.end() || state.has_surface(effect->name()))
         continue;
       tried.push_back(effect->name());

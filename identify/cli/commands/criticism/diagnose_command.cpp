@@ -28,6 +28,7 @@
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/session/diagnosed_campaign.h"
 #include "volcal/identify/text/atomic_folder.h"
+#include "volcal/model/effects/kinds/open/empirical.h"
 
 namespace volcal::cli {
 namespace {
@@ -93,8 +94,6 @@ void write_diagnosis(const DiagnoseArguments& arguments, const Campaign& campaig
 
 constexpr const char* kOfModel = "model";
 
-bool is_surface(const EffectSpec& effect) { return effect.kind == "empirical"; }
-
 /// Takes surfaces out of the model: laws are looked for in their place, not beside them.
 std::vector<EffectSpec> taken_out(ModelSpec& model, const std::function<bool(const EffectSpec&)>& is_wanted) {
   std::vector<EffectSpec> taken;
@@ -107,7 +106,7 @@ std::vector<EffectSpec> taken_out(ModelSpec& model, const std::function<bool(con
 void add_asked_laws(const std::string& text, ModelSpec& model, DiagnoseOptions& options) {
   std::vector<EffectSpec> surfaces;
   if (text == kOfModel) {
-    surfaces = taken_out(model, is_surface);
+    surfaces = taken_out(model, [](const EffectSpec& effect) { return is_surface(effect); });
     if (surfaces.empty())
       throw InputError({model.file, 0}, "--formula model: the model has no effect of kind \"empirical\"",
                        "give a model that has one with --model, or write --formula \"TARGET: DRIVERS\"");

@@ -18,6 +18,7 @@
 namespace volcal {
 namespace {
 
+constexpr const char* kCustom = "custom";
 constexpr std::array<const char*, 2> kParameters = {"p", "q"};
 
 std::string shortened(const std::string& text) {
@@ -171,7 +172,7 @@ std::unique_ptr<FormulaEffect> make_custom(const EffectTable& table) {
   const std::string text = text_with_held(formula, table);
   const std::string label = target + " by " + text;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"custom", target, written_list(formula.variables()), text},
+      EffectName{kCustom, target, written_list(formula.variables()), text},
       std::vector<EffectAmplitude>{{.label = label,
                                     .target = formula.target().target(),
                                     .key = formula.target().amplitude_key("amplitude"),
@@ -210,7 +211,7 @@ std::vector<EffectSpec> no_candidates(const Campaign& /*campaign*/) { return {};
 std::vector<EffectSpec> custom_examples(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
   const auto add = [&](const std::string& target, const std::string& expression) {
-    specs.push_back(effect_spec("custom", {{"target", target}, {"expression", expression}}));
+    specs.push_back(written_spec(target, expression));
   };
   const ErrorSymbol symbol{Component::A, linear_axes(campaign.machine).front()};
   const std::string axis(1, lower_letter_of(symbol.axis));
@@ -236,6 +237,10 @@ Expression custom_expression(const std::string& formula) {
           [](const std::string& name) { return is_parameter(name) || Variable::parse_written(name); }};
 }
 
+EffectSpec written_spec(const std::string& target, const std::string& expression) {
+  return effect_spec(kCustom, {{"target", target}, {"expression", expression}});
+}
+
 std::string custom_expression_names() {
   return "variables are " + listed_variables() + ", p, q; functions are " +
          listed_names(Expression::function_names());
@@ -243,7 +248,7 @@ std::string custom_expression_names() {
 
 const EffectKind& custom_effect() {
   static const FormulaKind kind(
-      {.kind = "custom",
+      {.kind = kCustom,
        .summary = "your own: amplitude times an expression of what was recorded, added to a target; written "
                   "into the model file, never looked for",
        .plain = "What was written in the model file explains the readings.",

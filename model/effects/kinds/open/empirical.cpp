@@ -1,5 +1,7 @@
 // What no name explains: a function of one to three recorded variables without a formula. Its coefficients
 // are amplitudes that a prior ties together, so that it is as smooth as the readings say.
+#include "volcal/model/effects/kinds/open/empirical.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,6 +20,7 @@
 namespace volcal {
 namespace {
 
+constexpr const char* kEmpirical = "empirical";
 constexpr std::size_t kMostDrivers = 3;
 constexpr double kMostPieces = 40;
 constexpr int kMostCoefficients = 400;
@@ -159,7 +162,7 @@ struct Statement {
 class EmpiricalEffect final : public Effect {
  public:
   explicit EmpiricalEffect(const EffectTable& table) : stated_(table), basis_(stated_.sides) {
-    name_ = {"empirical", stated_.target_text(), stated_.driver_text(),
+    name_ = {kEmpirical, stated_.target_text(), stated_.driver_text(),
              stated_.drivers.size() == 1 ? "curve" : "surface"};
     const std::vector<double> known =
         table.spec.options.numbers("coefficients").value_or(std::vector<double>{});
@@ -287,7 +290,7 @@ class EmpiricalKind final : public EffectKind {
  public:
   const EffectSchema& schema() const override {
     static const EffectSchema kSchema = {
-        .kind = "empirical",
+        .kind = kEmpirical,
         .summary =
             "what has no name: a smooth function of one to three recorded variables, found by the "
             "readings alone and added to a target",
@@ -375,17 +378,17 @@ class EmpiricalKind final : public EffectKind {
     const ErrorSymbol symbol{Component::A, first.name};
     const std::vector<double> from = {edge(first.travel_min), edge(last.travel_min)},
                               to = {edge(first.travel_max), edge(last.travel_max)};
-    return {effect_spec("empirical", {{"target", symbol.name()},
-                                      {"drivers", driver(first) + " " + driver(last)},
-                                      {"from", from},
-                                      {"to", to},
-                                      {"pieces", std::vector<double>{1, 1}}}),
-            effect_spec("empirical", {{"target", std::string("tool z")},
-                                      {"drivers", driver(first)},
-                                      {"factor", "dir_" + driver(first)},
-                                      {"from", std::vector<double>{from.front()}},
-                                      {"to", std::vector<double>{to.front()}},
-                                      {"pieces", std::vector<double>{2}}})};
+    return {effect_spec(kEmpirical, {{"target", symbol.name()},
+                                     {"drivers", driver(first) + " " + driver(last)},
+                                     {"from", from},
+                                     {"to", to},
+                                     {"pieces", std::vector<double>{1, 1}}}),
+            effect_spec(kEmpirical, {{"target", std::string("tool z")},
+                                     {"drivers", driver(first)},
+                                     {"factor", "dir_" + driver(first)},
+                                     {"from", std::vector<double>{from.front()}},
+                                     {"to", std::vector<double>{to.front()}},
+                                     {"pieces", std::vector<double>{2}}})};
   }
 
  private:
@@ -401,6 +404,14 @@ class EmpiricalKind final : public EffectKind {
 };
 
 }  // namespace
+
+bool is_surface(const EffectSpec& spec) { return spec.kind == kEmpirical; }
+
+bool is_surface(const EffectName& name) { return name.kind == kEmpirical; }
+
+EffectSpec surface_spec(const std::string& target, const std::string& drivers) {
+  return effect_spec(kEmpirical, {{"target", target}, {"drivers", drivers}});
+}
 
 const EffectKind& empirical_effect() {
   static const EmpiricalKind kind;

@@ -85,6 +85,13 @@ enum class LineReading {
   Rotation  ///< rotation about the key `axis`
 };
 
+/// What an instrument reads of a sphere on the table (key `sphere`).
+enum class SphereReading {
+  None,
+  Displacement,  ///< of the tool point, which stays on the sphere while axes move
+  Place          ///< where the axes find it: its centre, or contacts
+};
+
 /// An angle encoder that reads a channel.
 struct AngleEncoder {
   std::string name;  ///< "azimuth"
@@ -96,6 +103,7 @@ struct AngleEncoder {
 struct InstrumentTraits {
   LaserLength laser_length = LaserLength::None;
   LineReading line_reading = LineReading::None;
+  SphereReading sphere_reading = SphereReading::None;
   /// Its first column is a length that counts from a zero, which a run may lose.
   bool length_from_zero = false;
   /// It reads the length of a bar between a ball on the table (key `centre_mm`) and one at the tool; the

@@ -71,6 +71,7 @@ const InstrumentSchema kProbedSphereSchema = {
                     .help = "standard deviation of every component, contact or diameter",
                     .plausible_min = 1e-3,
                     .plausible_max = 1e4}},
+    .traits = {.sphere_reading = SphereReading::Place},
     .given_columns = {{},
                       {coordinate("tip_x_mm", "recorded tip at the contact, x"),
                        coordinate("tip_y_mm", "recorded tip at the contact, y"),

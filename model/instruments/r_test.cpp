@@ -26,7 +26,8 @@ const InstrumentSchema kRTestSchema = {
     .noise_keys = {{.key = "constant_um",
                     .help = "standard deviation of every component",
                     .plausible_min = 1e-3,
-                    .plausible_max = 1e4}}};
+                    .plausible_max = 1e4}},
+    .traits = {.sphere_reading = SphereReading::Displacement}};
 
 class RTestSetup final : public EquationBase<RTestSetup> {
  public:

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <utility>
 
-#include "volcal/sim/measurement/measurements.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal::cli {
 namespace {
@@ -124,46 +126,90 @@ std::string positions_table(const Structure& structure, const std::vector<AxisNa
   return "{ " + inside + " }";
 }
 
-std::string commented_head(const std::string& name, const std::string& instrument, const std::string& columns,
-                           const std::string& tool) {
+/// The first registered instrument that has a trait.
+const InstrumentSchema& schema_with(bool (*trait)(const InstrumentTraits& traits)) {
+  for (const Instrument* instrument : instruments()) {
+    if (trait(instrument->schema().traits)) return instrument->schema();
+  }
+  throw std::logic_error("no registered instrument has what a template asks for");
+}
+
+bool tracks_distances(const InstrumentTraits& traits) {
+  return traits.laser_length == LaserLength::Distance && traits.encoders.empty();
+}
+
+bool stays_on_sphere(const InstrumentTraits& traits) {
+  return traits.sphere_reading == SphereReading::Displacement;
+}
+
+bool finds_sphere(const InstrumentTraits& traits) { return traits.sphere_reading == SphereReading::Place; }
+
+bool reads_rotation(const InstrumentTraits& traits) { return traits.line_reading == LineReading::Rotation; }
+
+/// Column set whose readings rest on given columns: contacts with their directions.
+std::size_t set_of_contacts(const InstrumentSchema& schema) {
+  std::size_t set = 0;
+  while (set + 1 < schema.column_sets.size() && schema.given_of(set).empty()) ++set;
+  return set;
+}
+
+std::string commented_head(const std::string& name, const InstrumentSchema& schema, std::size_t column_set,
+                           const std::string& positions, const std::string& tool) {
+  std::string columns = positions;
+  for (const ColumnSchema& column : schema.file_columns(column_set)) columns += "," + column.column;
   return fmt::format(
       "#[[setups]]\n#name = \"{0}\"\n#instrument = \"{1}\"\n#data = \"{0}.csv\"  # columns: {2}\n#tool = "
       "\"{3}\"\n",
-      name, instrument, columns, tool);
+      name, schema.name, columns, tool);
+}
+
+/// "#radius_mm = 18.0  # nominal", of the schema's key that starts so.
+std::string commented_key(const InstrumentSchema& schema, std::string_view stem, const std::string& value,
+                          const std::string& comment = "") {
+  const auto key =
+      std::ranges::find_if(schema.keys, [&](const KeySchema& each) { return stem_of_key(each.key) == stem; });
+  if (key == schema.keys.end())
+    throw std::logic_error(schema.name + " has no key " + std::string(stem) + " for a template");
+  return fmt::format("#{} = {}{}\n", key->key, value, comment.empty() ? "" : "  # " + comment);
+}
+
+std::string commented_noise(const InstrumentSchema& schema, const std::string& value) {
+  return fmt::format("#noise = {{ {} = {} }}\n\n", schema.noise_keys.front().key, value);
+}
+
+/// Setups of a touch probe.
+std::string probe_setups(const std::string& positions) {
+  const InstrumentSchema& probe = schema_with(finds_sphere);
+  return "# The same with a touch probe: the centres that the control records, or, better, every contact "
+         "with "
+         "its direction.\n"
+         "# reading: centre less the machine's error there, or n.(tip + error) = n.centre + radius, n out of "
+         "the sphere\n" +
+         commented_head("probe_P1_short", probe, 0, positions, "short") +
+         commented_key(probe, "sphere", "\"P1\"",
+                       "place and session: a new name whenever the sphere was moved") +
+         commented_noise(probe, "1.0") +
+         commented_head("probe_P1_short_U", probe, set_of_contacts(probe), positions, "short") +
+         commented_key(probe, "sphere", "\"P1\"") +
+         commented_key(probe, "contact", "\"U\"", "kind of contact: setups of one kind share the radius") +
+         commented_key(probe, "radius", "18.0", "sphere and ball, nominal") +
+         commented_key(probe, "radius_sigma", "5.0", "0: calibrated; left out: free") +
+         commented_noise(probe, "1.0");
 }
 
 /// Setups with spheres that the tool point stays on.
 std::string sphere_setups(const Structure& structure, const std::string& positions) {
+  const InstrumentSchema& schema = schema_with(stays_on_sphere);
   std::string text;
   for (const TemplateSphere& sphere : spheres_of(structure)) {
-    for (const char* tool : kTemplateTools) {
-      text += commented_head(fmt::format("rtest_{}_{}", sphere.name, tool), sim::kRTest,
-                             positions + ",dx_um,dy_um,dz_um", tool);
-      text += fmt::format(
-          "#sphere = \"{}\"  # setups that name one sphere share where it is\n#frame = \"workpiece\"  # axes "
-          "of "
-          "the readings; or tool, machine\n#noise = {{ constant_um = 0.5 }}\n\n",
-          sphere.name);
-    }
+    for (const char* tool : kTemplateTools)
+      text += commented_head(fmt::format("rtest_{}_{}", sphere.name, tool), schema, 0, positions, tool) +
+              commented_key(schema, "sphere", fmt::format("\"{}\"", sphere.name),
+                            "setups that name one sphere share where it is") +
+              commented_key(schema, "frame", "\"workpiece\"", "axes of the readings; or tool, machine") +
+              commented_noise(schema, "0.5");
   }
-  text +=
-      "# The same with a touch probe: the centres that the control records, or, better, every contact with "
-      "its "
-      "direction.\n"
-      "# reading: centre less the machine's error there, or n.(tip + error) = n.centre + radius, n out of "
-      "the "
-      "sphere\n";
-  text += commented_head("probe_P1_short", sim::kProbedSphere, positions + ",cx_mm,cy_mm,cz_mm", "short") +
-          "#sphere = \"P1\"  # place and session: a new name whenever the sphere was moved\n"
-          "#noise = { constant_um = 1.0 }\n\n";
-  return text +
-         commented_head("probe_P1_short_U", sim::kProbedSphere,
-                        positions + ",tip_x_mm,tip_y_mm,tip_z_mm,n_x,n_y,n_z", "short") +
-         "#sphere = \"P1\"\n"
-         "#contact = \"U\"  # kind of contact: setups of one kind share the radius\n"
-         "#radius_mm = 18.0  # sphere and ball, nominal\n"
-         "#radius_sigma_um = 5.0  # 0: calibrated; left out: free\n"
-         "#noise = { constant_um = 1.0 }\n\n";
+  return text + probe_setups(positions);
 }
 
 /// Setups of one axis that turns alone.
@@ -174,16 +220,17 @@ std::string setups_alone(const Structure& structure, AxisName axis, const std::s
       "# Axis {0}, which turns alone: two linear axes keep no tool point on a sphere beside its line.\n"
       "# reading: angle of the axis about itself, actual less commanded (ISO 230-2)\n",
       letter);
-  text += commented_head(fmt::format("angle_{}", letter), "angle", positions + ",angle_urad", "short") +
-          fmt::format("#axis = [{:.1f}, {:.1f}, {:.1f}]\n#noise = {{ constant_urad = 0.5 }}\n\n", along.x(),
-                      along.y(), along.z());
+  const InstrumentSchema& angle = schema_with(reads_rotation);
+  text += commented_head(fmt::format("angle_{}", letter), angle, 0, positions, "short") +
+          commented_key(angle, "axis", vector_text({along.x(), along.y(), along.z()})) +
+          commented_noise(angle, "0.5");
   if (!has_line_within_reach(structure, axis)) return text;
+  const InstrumentSchema& sphere = schema_with(stays_on_sphere);
   text += "# reading: displacement of a sphere on the line of the axis (ISO 230-7); two heights tell tilts\n";
   for (const char* height : {"low", "high"})
-    text += commented_head(fmt::format("rotation_{}_{}", letter, height), sim::kRTest,
-                           positions + ",dx_um,dy_um,dz_um", "short") +
-            fmt::format("#sphere = \"{}_{}\"\n#frame = \"workpiece\"\n#noise = {{ constant_um = 0.3 }}\n\n",
-                        letter, height);
+    text += commented_head(fmt::format("rotation_{}_{}", letter, height), sphere, 0, positions, "short") +
+            commented_key(sphere, "sphere", fmt::format("\"{}_{}\"", letter, height)) +
+            commented_key(sphere, "frame", "\"workpiece\"") + commented_noise(sphere, "0.3");
   return text;
 }
 
@@ -243,7 +290,7 @@ std::string rotary_measurements(const Structure& structure) {
         "poses = \"grid\"  # every combination; \"singly\": one axis after another, which sees far less\n"
         "jitter = 0.3  # of a step: regular positions take high harmonics for low ones\n"
         "noise = {{ constant_um = 0.5, repeatability_um = 0.5 }}\n",
-        sim::kRTest, positions_table(structure, alone));
+        schema_with(stays_on_sphere).name, positions_table(structure, alone));
     for (const TemplateSphere& sphere : spheres_of(structure))
       text += fmt::format("[[measurements.spheres]]\nname = \"{}\"\nposition_mm = {}\n", sphere.name,
                           vector_text(sphere.position_mm));
@@ -304,8 +351,9 @@ std::string rotary_tools(const Structure& structure) {
 }
 
 std::vector<std::string> rotary_instruments(const Structure& structure) {
-  if (axes_alone(structure).size() == rotary_axes(structure).size()) return {sim::kRTest};
-  return {sim::kRTest, sim::kProbedSphere};
+  const std::string& stays = schema_with(stays_on_sphere).name;
+  if (axes_alone(structure).size() == rotary_axes(structure).size()) return {stays};
+  return {stays, schema_with(finds_sphere).name};
 }
 
 std::string rotary_setups(const Structure& structure, const std::string& positions) {
@@ -336,7 +384,7 @@ std::string rotary_study(const Structure& structure) {
              "[[measurements]]  # linear axes, rotary axes at home\n"
              "kind = \"{}\"\n"
              "grid = [6, 5, 4]{}\n",
-             sim::kLaserTracer,
+             schema_with(tracks_distances).name,
              missing_linear_axes(structure).empty() ? "" : "  # one position of an axis that is not there") +
          plane_measurements(structure) + rotary_measurements(structure);
 }

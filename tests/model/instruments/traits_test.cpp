@@ -56,6 +56,10 @@ TEST(InstrumentTraits, OfOurInstruments) {
                                      : name == "angle"        ? LineReading::Rotation
                                                               : LineReading::None;
     EXPECT_EQ(traits.line_reading, line_reading) << name;
+    const SphereReading sphere_reading = name == "r-test"          ? SphereReading::Displacement
+                                         : name == "probed-sphere" ? SphereReading::Place
+                                                                   : SphereReading::None;
+    EXPECT_EQ(traits.sphere_reading, sphere_reading) << name;
   }
   EXPECT_EQ(instrument_with_bar(), "ball-bar");
 }
@@ -91,6 +95,9 @@ TEST(InstrumentTraits, AgreeWithTheSchema) {
     }
     if (traits.laser_length == LaserLength::Displacement) {
       EXPECT_TRUE(testing_support::has_key(schema, "direction")) << schema.name;
+    }
+    if (traits.sphere_reading != SphereReading::None) {
+      EXPECT_TRUE(testing_support::has_key(schema, "sphere")) << schema.name;
     }
     if (traits.has_bar) {
       EXPECT_TRUE(testing_support::has_key(schema, "centre_mm")) << schema.name;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
@@ -235,6 +236,32 @@ int run_plan(const PlanArguments& arguments, const CLI::App& app) {
   return plan.plan.invisible().empty() || !identifies ? kDone : kIncomplete;
 }
 
+/// "4 of laser-tracer, laser-tracker; 0.1 of ball-bar": in the order of the registry.
+std::string usual_reading_times() {
+  std::vector<std::pair<double, std::string>> times;
+  for (const PlanInstrument* each : plan_instruments()) {
+    const auto same =
+        std::ranges::find(times, each->usual_reading_time(), &std::pair<double, std::string>::first);
+    if (same != times.end()) {
+      same->second += ", " + each->name();
+    } else {
+      times.emplace_back(each->usual_reading_time(), each->name());
+    }
+  }
+  std::string text;
+  for (const auto& [seconds, names] : times)
+    text += fmt::format("{}{:g} of {}", text.empty() ? "" : "; ", seconds, names);
+  return text;
+}
+
+std::string instruments_that_turn_axes() {
+  std::string names;
+  for (const PlanInstrument* each : plan_instruments()) {
+    if (each->turns_rotary_axes()) names += (names.empty() ? "" : ", ") + each->name();
+  }
+  return names;
+}
+
 void define_budget(CLI::App& app, PlanArguments& arguments) {
   app.add_option(
          "--stations", arguments.settings.budget.stations,
@@ -258,9 +285,7 @@ void define_budget(CLI::App& app, PlanArguments& arguments) {
       ->check(not_negative())
       ->capture_default_str();
   app.add_option("--reading-s", arguments.reading_s,
-                 "seconds that the machine stands for a reading; default: 4, of a ball-bar on its way 0.1, "
-                 "of an R-test "
-                 "2, of a probed sphere 30")
+                 "seconds that the machine stands for a reading; default: " + usual_reading_times())
       ->check(positive());
   app.add_option("--feed-mm-min", arguments.feed_mm_min, "between positions")
       ->check(positive())
@@ -273,9 +298,8 @@ void define_budget(CLI::App& app, PlanArguments& arguments) {
 void define_instrument(CLI::App& app, PlanArguments& arguments) {
   std::vector<std::string> instruments;
   for (const PlanInstrument* each : plan_instruments()) instruments.push_back(each->name());
-  app.add_option(
-         "--instrument", arguments.settings.instrument,
-         "r-test, probed-sphere and those named -rotary move the rotary axes, others leave them at home")
+  app.add_option("--instrument", arguments.settings.instrument,
+                 instruments_that_turn_axes() + " move the rotary axes, others leave them at home")
       ->check(CLI::IsMember(instruments))
       ->capture_default_str();
   app.add_option("--bar-mm", arguments.bar_mm, "length of the ball-bar, between the ball centres")

@@ -177,11 +177,25 @@ class MadeUpTree(unittest.TestCase):
         self.write("model/instruments/angle.cpp", "const InstrumentSchema kAngle = {", '    .name = "angle",', "};")
         self.assert_accepted("identify/planning/instruments/bar.cpp", 'return "ball-bar";')
         self.assert_accepted("identify/solve/word.cpp", 'add("angle");  // as "ball-bar"', 'add("ball-bar-length");')
-        self.assert_accepted("sim/measurement/bar.cpp", 'return plan.instrument == "ball-bar";')
+        constant = 'inline constexpr const char* kBallBar = "ball-bar";'
+        self.assert_accepted("sim/measurement/measurements.h", constant)
+        self.assert_accepted("sim/measurement/bar.cpp", "plan.instrument = kBallBar;")
+        self.assert_accepted("studies/bar.cpp", "plan.instrument = sim::kBallBar;")
         wrong = 'if (setup.instrument == "angle") return;'
         self.assert_rejected("identify/solve/a.cpp", wrong, "names an instrument", "InstrumentTraits")
         self.write("identify/solve/a.cpp", "")
         self.assert_rejected("studies/a.cpp", 'find(setups, "ball-bar", &Setup::instrument)', "names an instrument")
+        self.write("studies/a.cpp", "")
+        self.assert_rejected("sim/measurement/b.cpp", 'if (plan.instrument == "ball-bar") return;', "names an instrument")
+        self.write("sim/measurement/b.cpp", "")
+        self.assert_rejected("identify/cli/commands/a.cpp", "head(name, sim::kBallBar);", "sim::kBallBar", "InstrumentTraits")
+
+    def test_names_of_open_kinds(self):
+        self.write("model/effects/kinds/open/empirical.cpp", 'constexpr const char* kEmpirical = "empirical";',
+                   "const EffectSchema kSchema = {.kind = kEmpirical};")
+        self.assert_accepted("identify/criticism/search/a.cpp", "return empirical_effect().make(spec, {});")
+        self.assert_accepted("sim/known/a.cpp", 'return {{"empirical", known_empirical}};')
+        self.assert_rejected("identify/criticism/search/b.cpp", 'return spec.kind == "empirical";', "names a kind of effect")
 
     def test_folder_without_a_layer(self):
         self.write("model/elsewhere/a.h", "#pragma once")

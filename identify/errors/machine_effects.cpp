@@ -393,9 +393,7 @@ MachineEffects::MachineEffects(const FitResult& result, const Tool& tool, const 
   shared_ = std::move(shared);
 }
 
-const EffectName& MachineEffects::name(std::size_t effect) const {
-  return shared_->effects[effect].effect->name();
-}
+const EffectName& MachineEffects::name(std::size_t i) const { return shared_->effects[i].effect->name(); }
 const std::string& MachineEffects::label(std::size_t effect) const { return shared_->effects[effect].label; }
 const EffectReach& MachineEffects::reach(std::size_t effect) const { return shared_->effects[effect].reach; }
 std::size_t MachineEffects::effect_count() const { return shared_->effects.size(); }

@@ -13,6 +13,7 @@
 #include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/errors/volume/error_budget.h"
+#include "volcal/identify/errors/volume/volume_points.h"
 #include "volcal/identify/io/campaign/tolerance_reader.h"
 #include "volcal/identify/report/text/error_budget_text.h"
 #include "volcal/identify/report/text/field_text.h"
@@ -181,7 +182,7 @@ void define_budget(py::module_& module) {
       });
   module.def(
       "budget", &budget_of, py::arg("errors"), py::kw_only(), py::arg("tolerances") = py::none(),
-      py::arg("tool") = "", py::arg("conditions") = py::dict(), py::arg("grid") = 7,
+      py::arg("tool") = "", py::arg("conditions") = py::dict(), py::arg("grid") = kVolumeCells,
       py::arg("within_readings") = false,
       "Which error contributes how much to the error in the volume, as `volcal budget`: the same numbers to "
       "the "

@@ -37,6 +37,7 @@ class RigidCompromise::Sums {
     AxisName name = AxisName::X;
     Vector3d direction = Vector3d::UnitX();
     double middle = 0.0;               ///< m
+    double home = 0.0;                 ///< m
     double variance = 0.0;             ///< of a position, m^2
     std::vector<double> node, weight;  ///< of Gauss' rule over the travel; weights sum to 1
   };
@@ -58,8 +59,9 @@ class RigidCompromise::Sums {
       if (is_rotary(joint.axis)) continue;
       const Axis& axis = result.machine.axis(joint.axis);
       const double half = 0.5 * axis.travel(), middle = axis.travel_min + half;
-      axes_.push_back({joint.axis, Vector3d::Unit(direction_of(joint.axis)), middle, half * half / 3.0,
-                       both_signs(kNodes, middle, -half, half), both_signs(kWeights, 0.0, 0.5, 0.5)});
+      axes_.push_back({joint.axis, Vector3d::Unit(direction_of(joint.axis)), middle, axis.home,
+                       half * half / 3.0, both_signs(kNodes, middle, -half, half),
+                       both_signs(kWeights, 0.0, 0.5, 0.5)});
     }
     mean_ = Columns3::Zero(3, amplitudes());
     for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -78,6 +80,23 @@ class RigidCompromise::Sums {
   Columns3 main(std::size_t axis, double q, int direction) { return at(axis, q, direction).main - mean_; }
   Columns3 rotation(std::size_t axis, double q, int direction) {
     return at(axis, q, direction).rotation - mean_rotation_[axis];
+  }
+  Columns3 main_at_home(std::size_t axis) { return main(axis, axes_[axis].home, 0); }
+  Columns3 rotation_at_home(std::size_t axis) { return rotation(axis, axes_[axis].home, 0); }
+
+  /// Rotation E_i less that at home, and what that makes of the axes behind for each of them.
+  Columns3 rotation_from_home(std::size_t axis, double q, int direction) {
+    return rotation(axis, q, direction) - rotation_at_home(axis);
+  }
+  Columns3 main_with_rotations_at_home(std::size_t axis, double q, int direction) {
+    Columns3 moved = main(axis, q, direction);
+    const ChainAxis& own = axes_[axis];
+    for (std::size_t i = 0; i < axis; ++i) {
+      const Columns3 turned = rotation_at_home(i);
+      for (Eigen::Index c = 0; c < moved.cols(); ++c)
+        moved.col(c) += (q - own.middle) * Vector3d(turned.col(c)).cross(own.direction);
+    }
+    return moved;
   }
 
   std::size_t place_of(AxisName name) const {
@@ -183,8 +202,9 @@ PoseErrorRows RigidCompromise::motions(AxisName axis, double q, int direction) c
   const std::size_t place = sums_->place_of(axis);
   PoseErrorRows rows = PoseErrorRows::Zero(6, static_cast<Eigen::Index>(sums_->effects().amplitude_count()));
   if (place == sums_->axes().size()) return rows;
-  const Columns3 rotation = sums_->rotation(place, q, direction);
-  rows.topRows<3>() = sums_->main(place, q, direction);
+  const Columns3 rotation = sums_->rotation_from_home(place, q, direction);
+  rows.topRows<3>() = sums_->main_with_rotations_at_home(place, q, direction) -
+                      sums_->main_with_rotations_at_home(place, sums_->axes()[place].home, 0);
   rows.bottomRows<3>() = rotation;
   const Vector3d arm = sums_->arm(place, q);
   for (Eigen::Index c = 0; c < rows.cols(); ++c)
@@ -195,7 +215,7 @@ PoseErrorRows RigidCompromise::motions(AxisName axis, double q, int direction) c
 Vector3d RigidCompromise::along(AxisName axis, double q, int direction) const {
   const std::size_t place = sums_->place_of(axis);
   if (sums_->empty() || place == sums_->axes().size()) return Vector3d::Zero();
-  return sums_->summed(sums_->main(place, q, direction));
+  return sums_->summed(sums_->main(place, q, direction) - sums_->main_at_home(place));
 }
 
 Vector3d RigidCompromise::at(const AxisPosition& position, const ApproachDirection& direction) const {
@@ -206,9 +226,11 @@ Vector3d RigidCompromise::at(const AxisPosition& position, const ApproachDirecti
     const int approach = direction[index_of(name)];
     sum += along(name, q, approach);
     const Vector3d rotation = sums_->summed(sums_->rotation(i, q, approach));
+    const Vector3d at_home = sums_->summed(sums_->rotation_at_home(i));
     for (std::size_t k = i + 1; k < sums_->axes().size(); ++k) {
       const auto& behind = sums_->axes()[k];
-      sum += (position[index_of(behind.name)] - behind.middle) * rotation.cross(behind.direction);
+      sum += (position[index_of(behind.name)] - behind.middle) * rotation.cross(behind.direction) -
+             (behind.home - behind.middle) * at_home.cross(behind.direction);
     }
   }
   return sum;

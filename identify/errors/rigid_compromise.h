@@ -10,6 +10,9 @@
 /// are orthogonal: D_i is the mean over the other axes less the mean of all; E_i, of mean zero, follows from
 /// the moments of f with q_k - m_k. As error motions: rotation E_i, displacement D_i less what E_i makes of
 /// the arm at the middle of the other axes. Means by Gauss' rule, exact for polynomials up to degree 23.
+///
+/// Without the mean of f, zero at home as every error is (mean of both directions of approach): what E_i is
+/// at home is, of the error motions, a slope of the displacements of the axes behind.
 
 #include <Eigen/Core>
 #include <memory>
@@ -29,9 +32,9 @@ class RigidCompromise {
   std::vector<int> parameters() const;
   /// Error motions EX EY EZ (m) EA EB EC (rad) of a linear axis per unit of every amplitude: 6 x parameters.
   PoseErrorRows motions(AxisName axis, double q, int direction) const;
-  /// D_i of the result, m.
+  /// D_i of the result less its value at home, m.
   Eigen::Vector3d along(AxisName axis, double q, int direction) const;
-  /// All of it at a position, without the mean of f, m.
+  /// All of it at a position, zero at home, m.
   Eigen::Vector3d at(const AxisPosition& position, const ApproachDirection& direction) const;
 
  private:

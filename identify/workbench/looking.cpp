@@ -12,6 +12,7 @@
 #include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/errors/volume/error_budget.h"
+#include "volcal/identify/errors/volume/volume_points.h"
 #include "volcal/identify/report/rotary_json.h"
 #include "volcal/identify/report/values/volume_causes.h"
 #include "volcal/identify/session/proposed_measurements.h"
@@ -233,7 +234,7 @@ bool was_added(const Session& session, const VolumeCause& cause) {
 Json left_json(const Session& session) {
   const FitResult& result = session.fitted_result();
   const ErrorBudget budget = error_budget(result, result.machine.tools.front(), default_conditions(result),
-                                          kBudgetCells, RotaryPoses::AtRest);
+                                          kVolumeCells, RotaryPoses::AtRest);
   double squares = 0.0;
   Json held_by_none = Json::array();
   for (const BudgetLine& line : budget.contributions) {

@@ -12,6 +12,7 @@
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/volume/error_budget.h"
+#include "volcal/identify/errors/volume/volume_points.h"
 #include "volcal/identify/io/campaign/tolerance_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/report/text/error_budget_text.h"
@@ -28,7 +29,7 @@ struct BudgetArguments {
   std::string tolerances;
   std::string tool;
   ConditionsArguments conditions;
-  int grid = kBudgetCells;
+  int grid = kVolumeCells;
   bool verbose = false;
   bool json = false;
 };

@@ -12,9 +12,6 @@
 
 namespace volcal {
 
-/// Cells per linear axis: errors are judged at volume_points() of so many.
-inline constexpr int kVolumeCells = 9;
-
 /// Errors of the functional point, m, after their best rigid motion, which a frame's alignment takes up.
 struct ErrorLeft {
   double rms = 0.0;  ///< sqrt(mean |e|^2) over the volume

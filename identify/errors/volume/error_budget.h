@@ -19,9 +19,6 @@
 
 namespace volcal {
 
-/// Cells per axis of the budgets of pages, and of `volcal budget` unless the user says otherwise.
-inline constexpr int kBudgetCells = 7;
-
 /// The cause that stands for all effects of a model together.
 inline constexpr const char* kCauseOfEffects = "effects beyond the rigid body";
 

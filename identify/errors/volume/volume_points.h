@@ -20,6 +20,10 @@ Eigen::Vector3d movable_directions(const Machine& machine);
 /// home.
 Eigen::Vector3d place_of(const Machine& machine, const AxisPosition& position);
 
+/// Cells per linear axis where errors of a volume are judged, by budgets, tables and pages alike, unless the
+/// user says otherwise.
+inline constexpr int kVolumeCells = 9;
+
 /// As many places as there are `cells` to the power of the number of axes, a hundred at least, spread evenly
 /// over the travel of these linear axes; others at home. They follow a sequence without a period (Halton
 /// 1960): no wave and no table has one in common with them, and as many positions of every axis are seen as

@@ -7,6 +7,7 @@
 
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/errors/volume/error_budget.h"
+#include "volcal/identify/errors/volume/volume_points.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
@@ -87,7 +88,7 @@ VolumeCauses volume_causes(const FitResult& given, std::span<const EffectFinding
   const FitResult extended = extended_result(given, added);
   const Tool& tool = extended.machine.tools.front();
   const ErrorBudget budget =
-      error_budget(extended, tool, default_conditions(extended), kBudgetCells, RotaryPoses::AtRest);
+      error_budget(extended, tool, default_conditions(extended), kVolumeCells, RotaryPoses::AtRest);
   result.tool = tool.name;
   result.total_rms = budget.total.rms;
   const auto found = named_effects(added);

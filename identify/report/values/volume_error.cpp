@@ -5,6 +5,7 @@
 
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/volume/error_budget.h"
+#include "volcal/identify/errors/volume/volume_points.h"
 #include "volcal/identify/errors/volume/remaining_error.h"
 #include "volcal/identify/errors/volume/volumetric.h"
 
@@ -56,7 +57,7 @@ std::vector<ToolVolume> tool_volumes(const FitResult& result, int per_axis) {
     volume.u_w = std::move(remaining.u);
     volume.example_w = std::move(remaining.example);
     const BudgetLine whole =
-        error_budget(result, tool, default_conditions(result), kBudgetCells, RotaryPoses::AtRest).total;
+        error_budget(result, tool, default_conditions(result), kVolumeCells, RotaryPoses::AtRest).total;
     volume.error_rms = whole.rms;
     volume.error_max = whole.max;
     volume.u_rms = whole.u_rms;

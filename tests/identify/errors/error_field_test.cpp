@@ -12,18 +12,17 @@
 #include <vector>
 
 #include "tests/support/effect_campaign.h"
+#include "tests/support/effect_results.h"
 #include "tests/support/error_oracles.h"
 #include "tests/support/random_matrix.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/errors/error_tables.h"
-#include "volcal/identify/errors/rigid_compromise.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/errors/volume/volumetric.h"
 #include "volcal/identify/montecarlo/quantities.h"
 #include "volcal/identify/program/program_errors.h"
 #include "volcal/identify/report/values/volume_error.h"
-#include "volcal/identify/solve/summaries.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/measurement_model.h"
@@ -33,6 +32,10 @@ namespace {
 
 using Eigen::Vector3d;
 using testing_support::effect_campaign;
+using testing_support::model_with;
+using testing_support::Poses;
+using testing_support::random_poses;
+using testing_support::result_of_model;
 using testing_support::uniform;
 
 constexpr double kSame = 1e-12;  // m or rad
@@ -72,43 +75,6 @@ Setup probed_points(const Machine& machine, std::size_t tool, const std::vector<
   return setup;
 }
 
-/// Parameters of the size of real errors, a dense covariance.
-FitResult result_of_model(const MeasurementModel& model, std::mt19937_64& random) {
-  FitResult result;
-  result.machine = model.campaign().machine;
-  result.identified = model.spec();
-  result.layout = model.layout();
-  result.parameters = model.initial_parameters();
-  for (const FunctionGroup& group : result.layout.groups) {
-    for (int i = 0; i < group.size(); ++i) result.parameters[group.offset + i] = uniform(random, 2e-5);
-  }
-  for (const ParameterBlock& block : result.layout.blocks) {
-    if (block.kind != ParameterKind::Location && block.kind != ParameterKind::Effect) continue;
-    for (int k = 0; k < block.size(); ++k) result.parameters[block.offset + k] = uniform(random, 2e-5);
-  }
-  const Eigen::MatrixXd root = 1e-6 * test::random_matrix(random, result.layout.size, result.layout.size);
-  result.covariance = root * root.transpose();
-  result.conditions = recorded_conditions(model.campaign());
-  return result;
-}
-
-struct Poses {
-  std::vector<AxisPosition> positions;
-  std::vector<ApproachDirection> directions;
-};
-
-Poses random_poses(const Machine& machine, std::mt19937_64& random, std::size_t count) {
-  Poses poses{std::vector<AxisPosition>(count), std::vector<ApproachDirection>(count)};
-  for (std::size_t i = 0; i < count; ++i) {
-    for (const Axis& axis : machine.axes) {
-      poses.positions[i][index_of(axis.name)] =
-          axis.travel_min + axis.travel() * (0.5 + uniform(random, 0.5));
-      poses.directions[i][index_of(axis.name)] = uniform(random, 1.0) > 0.0 ? 1 : -1;
-    }
-  }
-  return poses;
-}
-
 /// A pose has no history: a lag has ended in the stated temperature, which no longer changes, and an axis has
 /// travelled far since it turned, where readings in time have it still underway.
 bool is_late(const EffectSpec& spec) {
@@ -120,14 +86,6 @@ bool acts_on_machine(const Effect& effect) {
   return std::ranges::any_of(effect.amplitudes(), [](const EffectAmplitude& amplitude) {
     return amplitude.target.kind == TargetKind::Motion || amplitude.target.kind == TargetKind::ToolOffset;
   });
-}
-
-ModelSpec model_with(const EffectSpec& effect) {
-  ModelSpec model;
-  model.default_function.basis = "legendre";
-  model.default_function.degree = 4;
-  model.effects = {effect};
-  return model;
 }
 
 /// Every effect of the catalogue that acts on the machine, one result each.
@@ -297,88 +255,6 @@ TEST(ErrorField, RowsAreTheDerivativesOfTheError) {
       }
     }
   });
-}
-
-// --- the rigid-body model nearest to an effect ---------------------------------------------------------
-
-/// What is left of EAY by y z is orthogonal to what the rotation of Y about x does to the axis behind it, and
-/// to every displacement of Y.
-TEST(RigidCompromise, IsTheLeastSquaresOne) {
-  std::mt19937_64 random(7);
-  const Campaign campaign = effect_campaign();
-  EffectSpec effect;
-  effect.kind = "product-coupling";
-  effect.options.set("symbol", std::string("EAY"));
-  effect.options.set("axis", std::string("Y"));
-  effect.options.set("second_axis", std::string("Z"));
-  const MeasurementModel model(campaign, model_with(effect));
-  const FitResult result = result_of_model(model, random);
-  const Tool& tool = result.machine.tools[1];
-  const RigidCompromise compromise(result, tool, {});
-  ASSERT_FALSE(compromise.empty());
-  const LinearDisplacements displacements(result, tool, {});
-  constexpr int kPlaces = 60;
-  const auto place = [&](AxisName axis, int i) {
-    return result.machine.axis(axis).travel_min + result.machine.axis(axis).travel() * (i + 0.5) / kPlaces;
-  };
-  const Axis& z = result.machine.axis(AxisName::Z);
-  const double middle_z = z.travel_min + 0.5 * z.travel();
-  const auto left_at = [&](const AxisPosition& q) {
-    return displacements.coupled(q, {}) - compromise.at(q, {});
-  };
-  double size = 0.0;
-  Vector3d mean = Vector3d::Zero();
-  std::vector<Vector3d> by_y, by_y_times_z;
-  for (int j = 0; j < kPlaces; j += 6) {
-    by_y.emplace_back(Vector3d::Zero());
-    by_y_times_z.emplace_back(Vector3d::Zero());
-    for (int k = 0; k < kPlaces; ++k) {
-      AxisPosition q{};
-      q[1] = place(AxisName::Y, j);
-      q[2] = place(AxisName::Z, k);
-      const Vector3d left = left_at(q);
-      by_y.back() += left / kPlaces;
-      by_y_times_z.back() += left * ((q[2] - middle_z) / z.travel() / kPlaces);
-      size = std::max(size, displacements.coupled(q, {}).norm());
-    }
-    mean += by_y.back() / 10.0;
-  }
-  EXPECT_GT(size, 1e-8);
-  for (std::size_t j = 0; j < by_y.size(); ++j) {
-    EXPECT_LT((by_y[j] - mean).norm(), 2e-3 * size);
-    EXPECT_LT(std::abs(by_y_times_z[j].y()), 2e-3 * size);
-  }
-}
-
-TEST(RigidCompromise, TablesOfErrorsWithItLeaveLessThanWithout) {
-  std::mt19937_64 random(8);
-  const Campaign campaign = effect_campaign();
-  EffectSpec effect;
-  effect.kind = "axis-coupling";
-  effect.options.set("symbol", std::string("EAY"));
-  effect.options.set("axis", std::string("Z"));
-  effect.options.set("shape", std::string("quadratic"));
-  const MeasurementModel model(campaign, model_with(effect));
-  FitResult result = result_of_model(model, random);
-  result.parameters.setZero();  // an error function is zero at home, which random coefficients are not
-  result.parameters[result.layout.find_block("EAY by z^2")->offset] = 3e-4;
-  FitResult rigid = result;
-  rigid.identified.effects.clear();
-  const Poses poses = random_poses(result.machine, random, 300);
-  const auto left = [&](const FitResult& tables_of) {
-    const TableFormat& format = *find_table_format("csv");
-    TableFormatOptions options;
-    options.step = 0.01;
-    const CompensationTables tables = format.read(write_tables(format, tables_of, options));
-    const DisplacementField truth = displacement_field(result, result.machine.tools[0], {});
-    const Vector3d at_home = truth(home_of(result.machine), kTowardsPlus);
-    double squares = 0.0;
-    for (std::size_t i = 0; i < poses.positions.size(); ++i)
-      squares += (truth(poses.positions[i], {}) - at_home + tables.correction(poses.positions[i], {}).linear)
-                     .squaredNorm();
-    return std::sqrt(squares / 300.0);
-  };
-  EXPECT_LT(left(result), 0.75 * left(rigid));
 }
 
 // --- conditions, measured positions, rotary axes ---------------------------------------------------------

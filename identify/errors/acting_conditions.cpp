@@ -73,7 +73,9 @@ std::vector<Finding> conditions_beyond_readings(const FitResult& result, const C
   const std::set<Variable> acting = conditions_that_act(result, conditions);
   const std::set<Variable> of_surfaces = conditions_of_effects(result, conditions, true);
   std::vector<Finding> findings;
-  for (const StatedCondition& condition : list_conditions(result, conditions)) {
+  Conditions by_value = conditions;  // whoever names the reference temperature means the same
+  by_value.stated.clear();
+  for (const StatedCondition& condition : list_conditions(result, by_value)) {
     const bool matters = condition.origin == kAsStated ? acting.contains(condition.variable)
                                                        : of_surfaces.contains(condition.variable);
     const std::optional<RecordedRange> range = recorded_range(result, condition.variable);

@@ -202,6 +202,21 @@ TEST_F(BeyondConditions, TheErrorDependsOnTheTemperatureThatHidesIt) {
   EXPECT_THAT(conditions_beyond_readings(result_, conditions(20.0)), ::testing::IsEmpty());
 }
 
+/// The reference temperature, at which the expansion is none, is the same whether it is assumed or stated.
+TEST(ConditionsBeyondReadings, AreTheSameWhoeverNamesTheReferenceTemperature) {
+  FitResult result = result_of_curve("EXX", 0.0, 0.0);
+  result.machine.axes[0].expansion = ScaleExpansion{10e-6, 1e-6, "scale"};
+  result.conditions.temperature_degC["scale"] = {23.0, 23.5, 24.2};
+  const Conditions assumed = default_conditions(result);
+  ASSERT_EQ(assumed.temperature_degC.at("scale"), 20.0);
+  EXPECT_THAT(conditions_beyond_readings(result, assumed), ::testing::IsEmpty());
+  Conditions stated = assumed;
+  stated.stated = {temperature_of("scale")};
+  EXPECT_THAT(conditions_beyond_readings(result, stated), ::testing::IsEmpty());
+  stated.temperature_degC["scale"] = 30.0;
+  EXPECT_EQ(conditions_beyond_readings(result, stated).size(), 1);
+}
+
 TEST_F(BeyondConditions, StatedModelsHoldForTheMeanOfTheirReadings) {
   EXPECT_EQ(default_conditions(result_).temperature_degC.at("spindle"), 21.0);
 }

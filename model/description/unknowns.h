@@ -11,7 +11,6 @@
 
 namespace volcal {
 
-inline std::vector<AxisName> linear_axes(const Machine& machine) { return machine.linear_axes(); }
 /// The six error motions of every linear axis, of X first.
 std::vector<ErrorSymbol> linear_axis_motions(const Machine& machine);
 /// Squareness errors of the datum whose axes the machine has, then the two angles of each of U, V, W: its

@@ -31,15 +31,6 @@ Eigen::VectorXd scaled(const Values& values, double unit) {
   return out;
 }
 
-/// As far as ever until it first turns.
-std::vector<double> since_turning(const Setup& setup, AxisName axis) {
-  std::vector<double> travelled = travel_since_turning(setup, axis);
-  double farthest = 0.0;
-  for (const double each : travelled) farthest = std::isinf(each) ? farthest : std::max(farthest, each);
-  for (double& each : travelled) each = std::min(each, farthest);
-  return travelled;
-}
-
 /// In the variable's unit; nothing for a column that is not there.
 template <class Values>
 std::optional<Eigen::VectorXd> of_column(const Values& values, const Variable& variable) {
@@ -80,7 +71,7 @@ std::optional<Eigen::VectorXd> recorded_variable(const SetupView& view, const Va
     case Kind::Direction:
       return of_column(readings.direction[index_of(variable.axis)], variable);
     case Kind::TravelSinceTurning:
-      return scaled(since_turning(view.setup, variable.axis), unit);
+      return scaled(finite_travel_since_turning(view.setup, variable.axis), unit);
     case Kind::Time:
       if (readings.time.empty()) return std::nullopt;
       return times(view).array() - clock_start(view);

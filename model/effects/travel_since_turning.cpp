@@ -1,6 +1,7 @@
 #include "volcal/model/effects/travel_since_turning.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -30,6 +31,14 @@ std::vector<double> travel_since_turning(const Setup& setup, AxisName axis) {
     const bool turned = step < 0.0 || direction[now] != direction[before];
     travelled[now] = turned ? std::max(step, 0.0) : travelled[before] + step;
   }
+  return travelled;
+}
+
+std::vector<double> finite_travel_since_turning(const Setup& setup, AxisName axis) {
+  std::vector<double> travelled = travel_since_turning(setup, axis);
+  double farthest = 0.0;
+  for (const double each : travelled) farthest = std::isinf(each) ? farthest : std::max(farthest, each);
+  for (double& each : travelled) each = std::min(each, farthest);
   return travelled;
 }
 

@@ -12,5 +12,7 @@ namespace volcal {
 /// the same side again has turned as well. Where it turned between two readings is not known: the travel
 /// counts from the earlier one, from 0 where the axis came from further back.
 std::vector<double> travel_since_turning(const Setup& setup, AxisName axis);
+/// The same, as far as ever until the axis first turns.
+std::vector<double> finite_travel_since_turning(const Setup& setup, AxisName axis);
 
 }  // namespace volcal

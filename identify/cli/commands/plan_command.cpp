@@ -87,7 +87,7 @@ void read_tools(const PlanArguments& arguments, PlanSettings& settings) {
     if (!tool) {
       std::string known;
       for (const Tool& each : settings.machine.tools) known += (known.empty() ? "" : ", ") + each.name;
-      refuse_plan("--tools: the machine file has no tool " + name, "choose of " + known);
+      refuse_plan("--tools: the machine file has no tool " + name, "choose one of " + known);
     }
     settings.budget.tools.push_back(*tool);
   }

@@ -31,18 +31,10 @@ constexpr TemplateSpheres kSpheresOfAFixedTableInPlane = {
     {{"S1", {150.0, 0.0, -400.0}}, {"S2", {-100.0, 0.0, -350.0}}, {"S3", {-50.0, 0.0, -480.0}}}};
 constexpr std::array<const char*, 3> kTemplateTools = {"short", "long", "side"};
 
-bool has_axis(const Structure& structure, AxisName axis) {
-  return std::ranges::find(structure.joints, axis, &Joint::axis) != structure.joints.end();
-}
-
 bool has_rotary_axes(const Structure& structure, bool workpiece_side) {
   return std::ranges::any_of(structure.joints, [&](const Joint& joint) {
     return is_rotary(joint.axis) && joint.workpiece_side == workpiece_side;
   });
-}
-
-bool is_on_workpiece_side(const Structure& structure, AxisName axis) {
-  return std::ranges::find(structure.joints, axis, &Joint::axis)->workpiece_side;
 }
 
 std::string vector_text(const std::array<double, 3>& v) {
@@ -52,7 +44,7 @@ std::string vector_text(const std::array<double, 3>& v) {
 std::vector<AxisName> rotary_axes(const Structure& structure) {
   std::vector<AxisName> axes;
   for (const AxisName axis : kAllAxes) {
-    if (is_rotary(axis) && has_axis(structure, axis)) axes.push_back(axis);
+    if (is_rotary(axis) && structure.has_axis(axis)) axes.push_back(axis);
   }
   return axes;
 }
@@ -71,7 +63,7 @@ std::string rotary_letters(const Structure& structure) {
 std::vector<AxisName> missing_linear_axes(const Structure& structure) {
   std::vector<AxisName> missing;
   for (const AxisName axis : kLinearAxes) {
-    if (!has_axis(structure, axis)) missing.push_back(axis);
+    if (!structure.has_axis(axis)) missing.push_back(axis);
   }
   return missing;
 }
@@ -98,14 +90,14 @@ TemplateSpheres spheres_of(const Structure& structure) {
     return turning ? kSpheresOfATurningTable : kSpheresOfAFixedTable;
   TemplateSpheres spheres = turning ? kSpheresOfATurningTableInPlane : kSpheresOfAFixedTableInPlane;
   for (TemplateSphere& sphere : spheres) {
-    if (!has_axis(structure, AxisName::X)) std::swap(sphere.position_mm[0], sphere.position_mm[1]);
+    if (!structure.has_axis(AxisName::X)) std::swap(sphere.position_mm[0], sphere.position_mm[1]);
   }
   return spheres;
 }
 
 /// A tool comes onto the line of a table, and of a head that turns about the tool.
 bool has_line_within_reach(const Structure& structure, AxisName axis) {
-  return is_on_workpiece_side(structure, axis) || axis == AxisName::C;
+  return structure.is_on_workpiece_side(axis) || axis == AxisName::C;
 }
 
 std::string listed(const std::vector<AxisName>& axes) {
@@ -254,7 +246,7 @@ std::string spheres_introduced(const Structure& structure) {
 /// Two tools, which tell tilts, and two places on the line of a table along which a linear axis goes.
 std::string rotation_measurement(const Structure& structure, AxisName axis) {
   const AxisName along = kLinearAxes[static_cast<std::size_t>(direction_of(axis))];
-  const bool moves_along = is_on_workpiece_side(structure, axis) && has_axis(structure, along);
+  const bool moves_along = structure.is_on_workpiece_side(axis) && structure.has_axis(along);
   return fmt::format(
       "\n[[measurements]]  # axis of rotation, spheres at two places on its line (ISO 230-7)\n"
       "kind = \"axis-of-rotation\"\n"
@@ -324,7 +316,7 @@ bool has_rotary_axes(const Structure& structure) {
 std::string axis_table_beside_rotary(AxisName axis, const Structure& structure) {
   const bool head = has_rotary_axes(structure, false);
   if (is_rotary(axis)) {
-    const bool nose = !is_on_workpiece_side(structure, axis) && !carries_linear_axes(structure, axis);
+    const bool nose = !structure.is_on_workpiece_side(axis) && !carries_linear_axes(structure, axis);
     return fmt::format(
         "[axes.{}]\ntravel_deg = [{}]\nhome_deg = 0.0\ncentre_mm = [0.0, 0.0, {}]  # a point of the axis "
         "line, all axes at 0{}\n",
@@ -347,7 +339,7 @@ std::string rotary_tools(const Structure& structure) {
       "offset_mm = [0.0, 0.0, -250.0]\n"
       "[tools.side]  # a lateral offset makes the rolls of the last axis visible\n"
       "offset_mm = {}\n",
-      has_axis(structure, AxisName::X) ? "[80.0, 0.0, -200.0]" : "[0.0, 80.0, -200.0]");
+      structure.has_axis(AxisName::X) ? "[80.0, 0.0, -200.0]" : "[0.0, 80.0, -200.0]");
 }
 
 std::vector<std::string> rotary_instruments(const Structure& structure) {

@@ -40,15 +40,6 @@ bool may_vary_with(const Family& family, const ScanVariable& variable) {
   });
 }
 
-/// As far as ever until it first turns.
-std::vector<double> since_turning(const Setup& setup, AxisName axis) {
-  std::vector<double> travelled = travel_since_turning(setup, axis);
-  double farthest = 0.0;
-  for (const double each : travelled) farthest = std::isinf(each) ? farthest : std::max(farthest, each);
-  for (double& each : travelled) each = std::min(each, farthest);
-  return travelled;
-}
-
 /// log10 p of a smooth or of a rough variation, whichever is less probable.
 double log10_p_of(const ScanVariable& variable, const Eigen::VectorXd& moved, const Projector& projector) {
   const Eigen::MatrixXd powers = moved.asDiagonal() * scan_powers(variable);
@@ -65,7 +56,8 @@ std::vector<ScanVariable> travel_since_turning(const LinearModel& model) {
   std::vector<ScanVariable> variables;
   for (const Axis& axis : campaign.machine.axes) {
     std::vector<std::vector<double>> travelled;
-    for (const Setup& setup : campaign.setups) travelled.push_back(since_turning(setup, axis.name));
+    for (const Setup& setup : campaign.setups)
+      travelled.push_back(finite_travel_since_turning(setup, axis.name));
     Eigen::VectorXd value(static_cast<Eigen::Index>(model.size()));
     for (std::size_t i = 0; i < model.size(); ++i) {
       const auto& place = model.observations()[i];

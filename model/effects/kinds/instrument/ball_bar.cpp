@@ -158,7 +158,7 @@ std::unique_ptr<FormulaEffect> make_servo_mismatch(const EffectTable& table) {
 
 std::vector<EffectSpec> servo_mismatches(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
-  const auto axes = linear_axes(campaign.machine);
+  const auto axes = campaign.machine.linear_axes();
   for (const AxisName first : axes) {
     for (const AxisName second : axes) {
       const auto circles = circles_with(campaign, {first, second});
@@ -216,7 +216,7 @@ std::unique_ptr<FormulaEffect> make_following_error(const EffectTable& table) {
 /// Of an axis that circles move in two planes: in one plane alone it is the servo mismatch.
 std::vector<EffectSpec> following_errors(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
-  const auto axes = linear_axes(campaign.machine);
+  const auto axes = campaign.machine.linear_axes();
   for (const AxisName axis : axes) {
     const auto planes = std::ranges::count_if(axes, [&](AxisName other) {
       return other != axis && !circles_with(campaign, {axis, other}).empty();

@@ -213,7 +213,7 @@ std::vector<EffectSpec> custom_examples(const Campaign& campaign) {
   const auto add = [&](const std::string& target, const std::string& expression) {
     specs.push_back(written_spec(target, expression));
   };
-  const ErrorSymbol symbol{Component::A, linear_axes(campaign.machine).front()};
+  const ErrorSymbol symbol{Component::A, campaign.machine.linear_axes().front()};
   const std::string axis(1, lower_letter_of(symbol.axis));
   add(symbol.name(), axis + " / 1000 * tool_length");
   add("tool z", "(1 - exp(-" + axis + " / p)) * abs(" + axis + ")");

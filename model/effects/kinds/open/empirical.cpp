@@ -371,7 +371,7 @@ class EmpiricalKind final : public EffectKind {
   std::vector<EffectSpec> candidates(const Campaign& /*campaign*/) const override { return {}; }
 
   std::vector<EffectSpec> examples(const Campaign& campaign) const override {
-    const std::vector<AxisName> axes = linear_axes(campaign.machine);
+    const std::vector<AxisName> axes = campaign.machine.linear_axes();
     const Axis &first = campaign.machine.axis(axes.front()), &last = campaign.machine.axis(axes.back());
     const auto driver = [](const Axis& axis) { return std::string(1, lower_letter_of(axis.name)); };
     const auto edge = [](double position) { return position / kMetrePerMillimetre; };

@@ -72,7 +72,7 @@ std::unique_ptr<FormulaEffect> make_coupling(const EffectTable& table) {
 std::vector<EffectSpec> couplings(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
   for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
-    for (const AxisName axis : linear_axes(campaign.machine)) {
+    for (const AxisName axis : campaign.machine.linear_axes()) {
       if (axis == symbol.axis) continue;
       for (const Power& power : kPowers) {
         specs.push_back(effect_spec("axis-coupling", {{"symbol", symbol.name()},

@@ -58,7 +58,7 @@ std::unique_ptr<FormulaEffect> make_foundation_tilt(const EffectTable& table) {
 std::vector<EffectSpec> foundation_tilts(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
   if (!some_stand_on_floor(campaign, true) || !some_stand_on_floor(campaign, false)) return specs;
-  for (const AxisName axis : linear_axes(campaign.machine)) {
+  for (const AxisName axis : campaign.machine.linear_axes()) {
     for (const char about : kDirections) {
       for (const char* shape : {"linear", "quadratic"}) {
         specs.push_back(effect_spec("foundation-tilt", {{"axis", std::string(1, letter_of(axis))},

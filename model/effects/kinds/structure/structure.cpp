@@ -38,7 +38,7 @@ bool said_elsewhere(ErrorSymbol symbol, AxisName first) {
 
 std::vector<EffectSpec> product_couplings(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
-  const auto axes = linear_axes(campaign.machine);
+  const auto axes = campaign.machine.linear_axes();
   for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
     for (const AxisName first : axes) {
       for (const AxisName second : axes) {

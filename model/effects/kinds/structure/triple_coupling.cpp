@@ -88,7 +88,7 @@ bool is_offered(ErrorSymbol symbol, const Factors& factors) {
 
 std::vector<EffectSpec> triple_couplings(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
-  const auto axes = linear_axes(campaign.machine);
+  const auto axes = campaign.machine.linear_axes();
   for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
       for (std::size_t j = i; j < axes.size(); ++j) {

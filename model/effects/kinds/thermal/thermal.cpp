@@ -55,7 +55,7 @@ std::unique_ptr<FormulaEffect> make_scale_expansion(const EffectTable& table) {
 
 std::vector<EffectSpec> scale_expansions(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
-  for (const AxisName axis : linear_axes(campaign.machine)) {
+  for (const AxisName axis : campaign.machine.linear_axes()) {
     for (const std::string& channel : temperature_channels(campaign)) {
       specs.push_back(
           effect_spec("scale-expansion", {{"axis", linear_axis_text(axis)}, {"temperature", channel}}));
@@ -159,7 +159,7 @@ std::unique_ptr<FormulaEffect> make_screw_heating(const EffectTable& table) {
 std::vector<EffectSpec> screw_heatings(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
   if (!has_time(campaign)) return specs;
-  for (const AxisName axis : linear_axes(campaign.machine)) {
+  for (const AxisName axis : campaign.machine.linear_axes()) {
     specs.push_back(effect_spec("screw-heating", {{"axis", linear_axis_text(axis)}}));
   }
   return specs;

@@ -167,7 +167,7 @@ TEST_F(ExtendProgram, SaysWhatANameCouldMean) {
   EXPECT_THAT(none.errors, HasSubstr("names nothing that could act here"));
   const auto unknown = extend({"gremlins:EXX"});
   EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.errors, HasSubstr("no kind of effect"));
+  EXPECT_THAT(unknown.errors, HasSubstr("not a kind of effect"));
   const auto by_hand = extend({"custom:EAY"});
   EXPECT_EQ(by_hand.exit_code, 2);
   EXPECT_THAT(by_hand.errors, HasSubstr("written into the model file"));

@@ -133,8 +133,8 @@ TEST_F(ImportCommand, DamagedFilesAndOptionsAreRefused) {
   write("x.rtl", testing::rtl_text());
   const std::string good = std::string("--unit um ") + kAt;
   EXPECT_THAT(import(path("x.rtl"), good + "--at 5").errors, HasSubstr("--at is given twice"));
-  EXPECT_THAT(import(path("x.rtl"), "--unit um --at Q=3").errors, HasSubstr("no position of an axis"));
-  EXPECT_THAT(import(path("x.rtl"), good + "--set 'noise'").errors, HasSubstr("no key and value"));
+  EXPECT_THAT(import(path("x.rtl"), "--unit um --at Q=3").errors, HasSubstr("not a position of an axis"));
+  EXPECT_THAT(import(path("x.rtl"), good + "--set 'noise'").errors, HasSubstr("not a key and a value"));
   EXPECT_THAT(import(path("x.rtl"), good + "--set 'colour = 3'").errors, HasSubstr("colour"));
   EXPECT_THAT(import(path("x.rtl"), good + "--tool drill").errors, HasSubstr("--tool drill"));
   EXPECT_THAT(import(path("x.rtl"), good + "--encoding cp1").errors, HasSubstr("--encoding \"cp1\""));

@@ -157,7 +157,7 @@ TEST(Plan, RefusesBadInput) {
   refused(kMachine + " --readings 100 --tool-count 9", "more tools than there are");
   refused(kMachine + " --readings 100 --minimise EXQ", "is not an error of this machine");
   refused(kMachine + " --readings 100 --minimise separate:reversal:EXX", "cannot be separated");
-  refused(kMachine + " --readings 100 --minimise separate:reversal:EXX,nonsense:Y", "no kind of effect");
+  refused(kMachine + " --readings 100 --minimise separate:reversal:EXX,nonsense:Y", "not a kind of effect");
   refused(kMachine + " --readings 100 --extend", "nothing to extend");
   refused(kMachine + " --readings 100 --range-mm 900,300", "not the smaller one");
   refused(kMachine + " --readings 100 --region-mm 500,100,0,1,0,1", "above its upper one");

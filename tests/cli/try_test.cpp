@@ -103,7 +103,7 @@ TEST(TryProgram, RefusesWithTheColumn) {
       {"'EXX: x' --parameter p=1", "--parameter p=1: the expression does not use p", "leave it out"},
       {"'EXX: x * p' --parameter p", "--parameter p: it has no value", "p=250+-50"},
       {"'EXX: x * p' --parameter r=1", "parameters of an expression are p and q", "p=250"},
-      {"'EXX: x * p' --parameter p=1+-0", "no number greater than 0", "p=250"},
+      {"'EXX: x * p' --parameter p=1+-0", "not a number greater than 0", "p=250"},
       {"'EXX: x * p' --parameter p=nan", "its value is not a number", "p=250"},
       {"'EXX: x * p' --parameter p=1 --parameter p=2", "p is given twice", "leave one out"},
       {"'EXX: T_oil * x'", "column T_oil_degC is missing, but the expression uses T_oil at character 1",

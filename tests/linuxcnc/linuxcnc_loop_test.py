@@ -174,7 +174,7 @@ class Volume(Loop):
 
     def test_a_damaged_grid_is_not_loaded(self):
         for what, change in {"15 numbers": lambda row: row[:-1],
-                             "no complete grid": lambda row: [row[0], row[1], row[2] + "1", *row[3:]]}.items():
+                             "not a complete grid": lambda row: [row[0], row[1], row[2] + "1", *row[3:]]}.items():
             tables = self.damaged("linuxcnc-grid", "--step", 100)
             text = (tables / "volcal.grid").read_text().splitlines()
             text[-2] = " ".join(change(text[-2].split()))

@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Neutral, MalformedTables,
                                            Malformed{"neutral-csv", "axis_corrections.csv", "towards_plus_um",
                                                      "towards_plus_mm", 1, "the header is"},
                                            Malformed{"neutral-csv", "correction_grid.csv", "1000,1000,500,",
-                                                     "1000,1000,501,", 4, "no complete grid"},
+                                                     "1000,1000,501,", 4, "not a complete grid"},
                                            Malformed{"neutral-csv", "correction_grid.csv", "1000,1000,500,",
                                                      "1000,1000,nan,", 27, "not a number of a table"}));
 
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"linuxcnc-grid", "volcal.grid", "39.370079 39.370079 19.685039 ", "39.370079 39.370079 ",
                   29, "the row has 14 numbers"},
         Malformed{"linuxcnc-grid", "volcal.grid", "39.370079 39.370079 19.685039 ",
-                  "39.370079 39.370079 19.685038 ", 5, "no complete grid"}));
+                  "39.370079 39.370079 19.685038 ", 5, "not a complete grid"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Skew, MalformedTables,
@@ -173,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Malformed{"sinumerik", "AX_EEC.INI", "%_N_AX_EEC_INI", "%_N_AX_CEC_INI", 1, "does not begin with"},
         Malformed{"sinumerik", "AX_EEC.INI", "M17\n", "", 26, "does not end in M17"},
-        Malformed{"sinumerik", "AX_EEC.INI", "[0,1,Z1]=", "[0,1,Z1] ", 21, "no assignment"},
+        Malformed{"sinumerik", "AX_EEC.INI", "[0,1,Z1]=", "[0,1,Z1] ", 21, "not an assignment"},
         Malformed{"sinumerik", "AX_EEC.INI", "[0,1,Z1]", "[0,0,Z1]", 21, "a second time"},
         Malformed{"sinumerik", "AX_EEC.INI", "[0,1,Z1]", "[0,1,W1]", 21, "machine axis is \"W1\""},
         Malformed{"sinumerik", "AX_EEC.INI", "_MAX[0,Z1]=1000", "_MAX[0,Z1]=2000", 26,
@@ -216,7 +216,7 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"fanuc", "pitch_error.txt", "UNIT_UM 1", "UNIT_UM 0", 7, "missing or out of range"},
         Malformed{"fanuc", "pitch_error.txt", "LARGEST_VALUE 7\n", "", 6, "missing or out of range"},
         Malformed{"fanuc", "pitch_error.txt", "PARAMETER AXIS VALUE\n", "", 7, "PARAMETER AXIS VALUE"},
-        Malformed{"fanuc", "pitch_error.txt", "3621 X 0", "3621 U 0", 11, "no parameter of an axis"},
+        Malformed{"fanuc", "pitch_error.txt", "3621 X 0", "3621 U 0", 11, "not a parameter of an axis"},
         Malformed{"fanuc", "pitch_error.txt", "3621 X 0", "3620 X 0", 11, "a second time"},
         Malformed{"fanuc", "pitch_error.txt", "3624 X", "3625 X", 14, "is not read here"},
         Malformed{"fanuc", "pitch_error.txt", "3624 X 500.0000\n", "", 15, "3624 is missing"},

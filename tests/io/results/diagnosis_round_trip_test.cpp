@@ -161,7 +161,7 @@ TEST(DiagnosisJson, SaysWhatIsWrongWithAFile) {
     }
     return "no error";
   };
-  EXPECT_THAT(message("{\"format\": "), HasSubstr("no complete JSON"));
+  EXPECT_THAT(message("{\"format\": "), HasSubstr("not complete JSON"));
   EXPECT_THAT(message("{\"format\": \"volcal-result-1\"}"), HasSubstr("volcal-result-1"));
   Json document = written();
   document["verdict"] = "PERHAPS";

@@ -194,7 +194,7 @@ TEST(ResultJson, RefusesDamagedFilesWithTheLine) {
     return "";
   };
   EXPECT_THAT(refusal("{\n\"format\": \n"), StartsWith("result.json:3: the file is not complete JSON"));
-  EXPECT_THAT(refusal(good.substr(0, good.size() / 2)), HasSubstr("no complete JSON"));
+  EXPECT_THAT(refusal(good.substr(0, good.size() / 2)), HasSubstr("not complete JSON"));
   EXPECT_THAT(refusal("{}"), HasSubstr("format"));
   std::string other = good;
   other.replace(other.find("volcal-result-1"), 15, "volcal-result-0");

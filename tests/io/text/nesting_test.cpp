@@ -74,7 +74,7 @@ TEST(JsonInput, SaysInWordsWhatIsWrong) {
   EXPECT_THAT(problem("[1]"), HasSubstr("a value is of another type than volcal writes"));
   EXPECT_THAT(problem("{\"format\": 1}"), HasSubstr("a value is of another type than volcal writes"));
   EXPECT_THAT(problem("{\"format\": 1e999}"), HasSubstr("too large"));
-  EXPECT_THAT(problem("{\"format\": "), HasSubstr("no complete JSON"));
+  EXPECT_THAT(problem("{\"format\": "), HasSubstr("not complete JSON"));
 }
 
 }  // namespace

@@ -98,9 +98,9 @@ class BSpline final : public Basis {
 
   int find_piece(double q) const {
     const int last = piece_count() - 1;
-    // Right for equal pieces; a few steps of search mend it for others.
+    // Right for equal pieces; a few steps of search mend it for others. NaN is in the first piece.
     const double guess = (q - breakpoints_.front()) * pieces_per_unit_;
-    int piece = guess <= 0.0 ? 0 : guess >= last ? last : static_cast<int>(guess);
+    int piece = !(guess > 0.0) ? 0 : guess >= last ? last : static_cast<int>(guess);
     while (piece < last && q >= breakpoints_[static_cast<std::size_t>(piece) + 1]) ++piece;
     while (piece > 0 && q < breakpoints_[static_cast<std::size_t>(piece)]) --piece;
     return piece;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -149,6 +150,15 @@ TEST(BSpline, UniformAndUnevenBreakpointsFindTheSamePiece) {
     EXPECT_EQ(basis->evaluate(std::nextafter(start, 0.0), values.data()), std::max(piece - 1, 0));
   }
   EXPECT_EQ(basis->evaluate(0.8, values.data()), 6);
+}
+
+TEST(BSpline, HasNoValueAtWhatIsNoNumber) {
+  for (int degree = 1; degree <= 3; ++degree) {
+    const auto basis = spline(degree, kUneven);
+    std::array<double, 4> values{};
+    EXPECT_EQ(basis->evaluate(std::nan(""), 0, values.data()), 0);
+    EXPECT_TRUE(std::isnan(values[0]));
+  }
 }
 
 TEST(BSpline, RefusesBreakpointsThatDoNotAscendOrMissTheTravel) {

@@ -51,11 +51,30 @@ std::string meant_direction(const std::vector<std::string>& words, const Machine
   return "";
 }
 
-/// "temp_x", "temperature spindle", "Temp": the words behind it name the channel.
-std::string meant_temperature(const std::vector<std::string>& words) {
-  if (!is_one_of(words.front(), {"temp", "temperature", "temperatur"})) return "";
+/// "°C" of "T air [°C]".
+std::string unit_in_brackets(const std::string& name) {
+  const std::size_t open = name.find_first_of("[(");
+  if (open == std::string::npos) return "";
+  const std::size_t begin = name.find_first_not_of(' ', open + 1);
+  const std::size_t close = name.find_first_of("])", open);
+  if (begin == std::string::npos || begin >= close) return "";
+  const std::string unit = name.substr(begin, close == std::string::npos ? close : close - begin);
+  return unit.substr(0, unit.find_last_not_of(' ') + 1);
+}
+
+bool is_unit_of_temperature(const std::string& unit) {
+  return is_degree_celsius(unit) || is_one_of(unit, {"K", "degF", "\u00B0F"});
+}
+
+/// "temp_x", "temperature spindle", "Temp", "T_air_degC": the words behind it name the channel. Where the
+/// unit is that of a temperature, as in "T air [°C]" and "spindle [°C]", any words do.
+std::string meant_temperature(const std::string& name, const std::vector<std::string>& words) {
+  const bool by_unit = is_unit_of_temperature(unit_in_brackets(name)) ||
+                       (words.front() == "t" && is_one_of(words.back(), {"degc", "c", "celsius"}));
+  const bool by_word = is_one_of(words.front(), {"temp", "temperature", "temperatur"});
+  if (!by_unit && !by_word) return "";
   std::string channel;
-  for (std::size_t i = 1; i < words.size(); ++i) {
+  for (std::size_t i = by_word || words.front() == "t" ? 1 : 0; i < words.size(); ++i) {
     if (is_one_of(words[i], {"degc", "c", "deg", "celsius"})) continue;
     channel += (channel.empty() ? "" : "_") + words[i];
   }
@@ -72,11 +91,17 @@ std::string meant_word(const std::string& word) {
 
 }  // namespace
 
+bool is_degree_celsius(std::string_view unit) {
+  static constexpr std::string_view kNames[] = {"degC",  "\u00B0C",  "\u00BAC", "\u2103", "C",
+                                                "deg C", "\u00B0 C", "Celsius", "celsius"};
+  return std::ranges::find(kNames, unit) != std::end(kNames);
+}
+
 std::string meant_column(const std::string& name, const std::vector<std::string>& missing,
                          const Machine& machine) {
   const std::vector<std::string> words = words_of(name);
   if (words.empty()) return "";
-  if (std::string temperature = meant_temperature(words); !temperature.empty()) return temperature;
+  if (std::string temperature = meant_temperature(name, words); !temperature.empty()) return temperature;
   std::string meant = meant_direction(words, machine);
   if (meant.empty()) meant = meant_word(words.front());
   if (meant.empty() && words.size() > 1 && says_direction(words[0])) return "";

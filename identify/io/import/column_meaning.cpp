@@ -4,6 +4,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "volcal/identify/io/campaign/column_names.h"
 #include "volcal/identify/io/import/import_format.h"
 #include "volcal/identify/io/import/import_lines.h"
 #include "volcal/model/description/units.h"
@@ -78,7 +79,7 @@ std::optional<double> factor_to_unit(const std::string& written, std::string_vie
   if (column_unit == "um") return ratio(length_unit(written), kMetrePerMicrometre);
   if (column_unit == "deg") return ratio(angle_unit(written), kRadianPerDegree);
   if (column_unit == "urad") return ratio(angle_unit(written), kRadianPerMicroradian);
-  if (column_unit == "degC" && (written == "degC" || written == "\u00B0C" || written == "C")) return 1.0;
+  if (column_unit == "degC" && is_degree_celsius(written)) return 1.0;
   if (column_unit == "mm_min" && written == "mm/min") return 1.0;
   if (column_unit == "s" && written == "s") return 1.0;
   if (column_unit == "s" && written == "ms") return 1e-3;

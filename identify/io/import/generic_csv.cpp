@@ -158,6 +158,11 @@ class GenericCsv {
     const std::string unit = unit_of(header, column);
     if (header == column || own.empty() || unit == own) return 1.0;
     const auto factor = factor_to_unit(unit, own);
+    if (!factor && own == "degC")
+      throw InputError(header_place(),
+                       "the unit \"" + printable(unit) + "\" of column \"" + printable(header) +
+                           "\" is not the degree Celsius",
+                       "give it in degC, and name it " + column);
     if (!factor)
       throw InputError(
           header_place(),

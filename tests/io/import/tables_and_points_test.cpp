@@ -114,6 +114,25 @@ TEST_F(TablesAndPoints, MeaningOfColumns) {
   EXPECT_EQ(fact(report, "beside the table"), "1 line, first \"report of a test\" <not read>");
 }
 
+TEST_F(TablesAndPoints, TemperaturesAreNoTimes) {
+  ImportAnswers answers = sample(tables_, "standard.csv").answers;
+  const std::string rows = "0,1,0,20,+\n100,2,1,20.5,+\n200,-1,2,21,-\n";
+  for (const char* header :
+       {"T air [\u00B0C]", "T_air_degC", "Temp air (C)", "t air [degC]", "Air [\u00B0C]"}) {
+    const ImportedReadings readings = import(
+        "Position X [mm],Error [um],Time [min]," + std::string(header) + ",Direction\n" + rows, answers);
+    EXPECT_THAT(column(readings, "time_s"), ElementsAre(0.0, 60.0, 120.0)) << header;
+    EXPECT_THAT(column(readings, "T_air_degC"), ElementsAre(20.0, 20.5, 21.0)) << header;
+  }
+  EXPECT_THAT(
+      refused("Position X [mm],Error [um],Time [min],T air [K],Direction\n" + rows, answers),
+      HasSubstr("the unit \"K\" of column \"T air [K]\" is not the degree Celsius (give it in degC, and "
+                "name it T_air_degC)"));
+  const ImportedReadings time =
+      import("Position X [mm],Error [um],T [s]\n0,1,0\n100,2,1\n200,-1,2\n", answers);
+  EXPECT_THAT(column(time, "time_s"), ElementsAre(0.0, 1.0, 2.0));
+}
+
 TEST_F(TablesAndPoints, WhatATableDoesNotSayIsAskedFor) {
   ImportAnswers answers = sample(tables_, "standard.csv").answers;
   const std::string bytes = sample(tables_, "standard.csv").bytes;

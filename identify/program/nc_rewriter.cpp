@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -22,14 +23,33 @@ std::size_t length_without_end(std::string_view line) {
   return last == std::string_view::npos ? 0 : last + 1;
 }
 
+void check_tolerance_of_path(const char* option, double tolerance) {
+  if (std::isfinite(tolerance) && tolerance > 0.0) return;
+  throw InputError({}, fmt::format("{} {:g} is out of range", option, tolerance / kMetrePerMicrometre),
+                   "give a positive number of um");
+}
+
+NcRewriteOptions checked_options(NcRewriteOptions options) {
+  check_rewrite_options(options);
+  return options;
+}
+
 }  // namespace
+
+void check_rewrite_options(const NcRewriteOptions& options) {
+  check_tolerance_of_path("--tolerance-um", options.tolerance);
+  check_tolerance_of_path("--arc-tolerance-um", options.arc_tolerance);
+  if (options.decimals_mm < kFewestDecimals || options.decimals_mm > kMostDecimals)
+    throw InputError({}, fmt::format("--decimals {} is out of range", options.decimals_mm),
+                     fmt::format("give {} to {}", kFewestDecimals, kMostDecimals));
+}
 
 NcRewriter::NcRewriter(ProgramErrors errors, NcSetup setup, FunctionalPoint functional_point,
                        NcRewriteOptions options, std::string file)
     : errors_(std::move(errors)),
       interpreter_(std::move(setup), std::move(file)),
       functional_point_(std::move(functional_point)),
-      options_(std::move(options)),
+      options_(checked_options(std::move(options))),
       writer_(interpreter_.setup(), options_.decimals_mm) {
   for (const AxisName axis : kLinearAxes) {
     if (!errors_.machine.has_axis(axis)) continue;

@@ -22,13 +22,19 @@
 
 namespace volcal {
 
+/// Of coordinates in mm.
+inline constexpr int kFewestDecimals = 4, kMostDecimals = 7;
+
 struct NcRewriteOptions {
-  double tolerance = 0.5e-6;        ///< of the corrected path, m
-  double arc_tolerance = 0.5e-6;    ///< of chords in place of arcs, m
-  int decimals_mm = 4;              ///< of coordinates in mm; inches get one more
-  bool within_readings = false;     ///< refuse motions beyond the measured positions
-  std::vector<std::string> header;  ///< lines above the program (program_header.h); empty = none
+  double tolerance = 0.5e-6;             ///< of the corrected path, m
+  double arc_tolerance = 0.5e-6;         ///< of chords in place of arcs, m
+  int decimals_mm = 4;                   ///< of coordinates in mm; inches get one more
+  bool within_readings = false;          ///< refuse motions beyond the measured positions
+  std::vector<std::string> header = {};  ///< lines above the program (program_header.h); empty = none
 };
+
+/// Throws InputError for decimals or tolerances out of range.
+void check_rewrite_options(const NcRewriteOptions& options);
 
 struct NcRewriteSummary {
   std::int64_t lines_read = 0;
@@ -48,6 +54,7 @@ class NcRewriter {
   /// Takes what one line becomes.
   using Sink = std::function<void(std::string_view line, std::span<const NcWrittenLine> written)>;
 
+  /// Throws InputError as check_rewrite_options() does.
   NcRewriter(ProgramErrors errors, NcSetup setup, FunctionalPoint functional_point, NcRewriteOptions options,
              std::string file);
 

@@ -272,7 +272,7 @@ std::function<int()> define_compensate(CLI::App& app) {
                  "largest distance of the chords that stand for arcs, um; default 0.5")
       ->check(positive());
   app.add_option("--decimals", arguments->decimals, "of coordinates in mm, inches have one more; default 4")
-      ->check(CLI::Range(4, 7));
+      ->check(CLI::Range(kFewestDecimals, kMostDecimals));
   app.add_option("--rotary-decimals", arguments->rotary_decimals,
                  "of positions of rotary axes in deg; default 5")
       ->check(CLI::Range(3, 8));

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "tests/support/nc_programs.h"
+#include "tests/support/refusal.h"
 
 namespace volcal {
 namespace {
@@ -38,6 +39,19 @@ TEST(NcRewriter, SubtractsTheErrorAtTheCommand) {
   EXPECT_EQ(rewritten("G0 X500\n", long_x(), simple_setup(), options).text, "G0 X499.950005\n");
   // Errors that are straight along the path need no further line.
   EXPECT_EQ(rewritten("G1 X500 F100\n", long_x()).text, "G1 X499.9500 F100\n");
+}
+
+TEST(NcRewriter, RefusesDecimalsAndTolerancesOutOfRange) {
+  const auto refused = [](const NcRewriteOptions& options) {
+    return testing::refusal([&] { rewritten("G0 X10\n", shift(1, 0, 0), simple_setup(), options); });
+  };
+  for (const int decimals : {-3, 3, 8})
+    EXPECT_THAT(refused({.decimals_mm = decimals}), ::testing::HasSubstr("give 4 to 7")) << decimals;
+  for (const int decimals : {4, 7}) EXPECT_EQ(refused({.decimals_mm = decimals}), "");
+  for (const double tolerance : {std::nan(""), -1e-6, 0.0}) {
+    EXPECT_THAT(refused({.tolerance = tolerance}), ::testing::HasSubstr("--tolerance-um"));
+    EXPECT_THAT(refused({.arc_tolerance = tolerance}), ::testing::HasSubstr("--arc-tolerance-um"));
+  }
 }
 
 TEST(NcRewriter, AddsAxesThatTheBlockDoesNotMove) {

@@ -61,6 +61,11 @@ struct TableFormatOptions {
   std::optional<CompensationTables> active;
 };
 
+/// Of TableFormatOptions::grid_per_axis.
+inline constexpr int kMostGridPerAxis = 301;
+/// Of TableFormatOptions::rotary_step that a user states, deg; 0 is allowed too.
+inline constexpr double kFinestRotaryStep_deg = 0.01, kCoarsestRotaryStep_deg = 180.0;
+
 struct TableFormat {
   std::string_view name;          ///< as the user writes it: "csv"
   std::string_view summary;       ///< one sentence for the user

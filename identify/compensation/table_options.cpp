@@ -4,8 +4,10 @@
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/rigid_compromise.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
+#include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/parallel_axes.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -14,6 +16,7 @@ constexpr std::array<std::string_view, 6> kConditions = {
     "machine_state", "load", "feed", "ambient_temperature", "component_temperatures", "active_compensations"};
 
 constexpr int kSuperimposedCells = 5;
+constexpr double kRoundingOfSteps = 1e-9;
 constexpr double kLostBySuperimposing = 0.2e-6;  // m
 
 template <class Names>
@@ -119,6 +122,24 @@ void check_active_tables(const TableFormat& format, const FitResult& result,
                      "give --type with all that is active, L-VOL holds everything");
 }
 
+/// Positions and steps that are possible at all.
+void check_positions(const TableFormatOptions& options) {
+  check_table_rows(options.functions.positions);
+  if (options.grid_per_axis < 1 || options.grid_per_axis > kMostGridPerAxis)
+    throw InputError({}, "--grid " + std::to_string(options.grid_per_axis) + " is out of range",
+                     "give 1 to " + std::to_string(kMostGridPerAxis));
+  if (!std::isfinite(options.step) || options.step < 0.0)
+    throw InputError({}, "--step " + number_text(options.step / kMetrePerMillimetre) + " is out of range",
+                     "give a positive number of mm");
+  const double rotary_step = options.rotary_step / kRadianPerDegree;
+  const bool fits = rotary_step >= kFinestRotaryStep_deg * (1.0 - kRoundingOfSteps) &&
+                    rotary_step <= kCoarsestRotaryStep_deg * (1.0 + kRoundingOfSteps);
+  if (!fits && options.rotary_step != 0.0)
+    throw InputError({}, "--rotary-step " + number_text(rotary_step) + " is out of range",
+                     "give " + number_text(kFinestRotaryStep_deg) + " to " +
+                         number_text(kCoarsestRotaryStep_deg) + " deg");
+}
+
 }  // namespace
 
 std::span<const std::string_view> recordable_conditions() { return kConditions; }
@@ -137,6 +158,7 @@ void check_table_options(const TableFormat& format, const FitResult& result,
   check_type(format, result, options.type);
   if (result.machine.main_linear_axes().empty())
     throw InputError({}, "the machine has no linear axis", "compensation tables are for linear axes");
+  check_positions(options);
   check_settings(format, options);
   tool_of(result.machine, options);
   check_active_tables(format, result, options);

@@ -8,6 +8,7 @@
 #include "volcal/identify/errors/correction_positions.h"
 #include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/errors/rigid_compromise.h"
+#include "volcal/model/description/errors.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
@@ -319,6 +320,12 @@ PoseErrorVector variance_beyond_readings(const FitResult& result, const ErrorFie
 }
 
 }  // namespace
+
+void check_table_rows(int positions) {
+  if (positions == 0 || (positions >= kFewestTableRows && positions <= kMostTableRows)) return;
+  throw InputError({}, "--positions " + std::to_string(positions) + " is out of range",
+                   "give " + std::to_string(kFewestTableRows) + " to " + std::to_string(kMostTableRows));
+}
 
 std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options) {
   std::vector<ErrorTableRow> table;

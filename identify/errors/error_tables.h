@@ -36,6 +36,11 @@ struct ErrorTableOptions {
   std::string tool = {};  ///< for which effects that couple axes are shared out; the first when empty
 };
 
+/// Of ErrorTableOptions::positions that a user states; 0 is allowed too.
+inline constexpr int kFewestTableRows = 2, kMostTableRows = 100000;
+/// Throws InputError beyond that range.
+void check_table_rows(int positions);
+
 /// "errors.held-beyond-readings" of every axis that was measured over a part of its travel.
 std::vector<Finding> unmeasured_travel(const FitResult& result);
 /// What was identified and is in no table of linear axes: effects that act on no pose, and the errors of

@@ -385,7 +385,7 @@ void add_compensation_options(CLI::App& app, TablesArguments& arguments) {
          "--rotary-step", arguments.rotary_step_deg,
          "at most, between positions of rotary axes, deg; default 10 on grids and 5 in tables of one axis, "
          "or what the tolerance needs below that")
-      ->check(CLI::Range(0.01, 180.0));
+      ->check(CLI::Range(kFinestRotaryStep_deg, kCoarsestRotaryStep_deg));
   app.add_option(
          "--tolerance", arguments.tolerance_um,
          "choose the largest round steps at which the tables, read back, follow the ideal compensation "
@@ -421,9 +421,9 @@ std::function<int()> define_tables(CLI::App& app) {
   add_alignment_options(app, arguments->alignment);
   app.add_option("--positions", arguments->positions,
                  "rows per function of the csv tables; default: round steps, 21 to 51 rows")
-      ->check(CLI::Range(2, 100000));
+      ->check(CLI::Range(kFewestTableRows, kMostTableRows));
   app.add_option("--grid", arguments->grid, "points per axis of the volumetric grid of the csv tables")
-      ->check(CLI::Range(1, 301));
+      ->check(CLI::Range(1, kMostGridPerAxis));
   app.add_option("--zero", arguments->zero,
                  "csv tables with reversal: mean of both directions is zero at home, or the + direction "
                  "(ISO/TR 16907, Table 1)")

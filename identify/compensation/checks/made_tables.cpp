@@ -1,9 +1,12 @@
 #include "volcal/identify/compensation/checks/made_tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "volcal/identify/errors/rotary/rotary_axes.h"
+#include "volcal/identify/text/text_file.h"
+#include "volcal/model/description/errors.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 
@@ -87,6 +90,16 @@ void report_more_than_none(MadeTables& made) {
   if (made.rotary_check) report(made.rotary_check->before.rms, made.rotary_check->exported.rms);
 }
 
+/// 0 = the default.
+void check_tolerance(const TableFormatOptions& options, double tolerance) {
+  if (!std::isfinite(tolerance) || tolerance < 0.0)
+    throw InputError({}, "--tolerance " + number_text(tolerance / kMetrePerMicrometre) + " is out of range",
+                     "give a positive number of um");
+  if (tolerance > 0.0 && options.step != 0.0)
+    throw InputError({}, "--tolerance and --step are given, and each says where positions are",
+                     "leave one of the two out");
+}
+
 }  // namespace
 
 MadeTables make_tables(const TableFormat& format, const FitResult& result, const TableFormatOptions& options,
@@ -94,6 +107,7 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
   MadeTables made;
   made.format = &format;
   made.options = options;
+  check_tolerance(options, tolerance);
   check_table_options(format, result, made.options);
   const bool own_positions = format.positions_of_own && tolerance == 0.0;
   const double wanted = tolerance > 0.0 ? tolerance : kDefaultTableTolerance;

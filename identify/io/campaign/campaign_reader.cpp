@@ -94,7 +94,7 @@ class CampaignReader {
 
   Campaign with_readings(const std::vector<std::vector<NumberColumn>>& readings) {
     return with_readings([&](std::size_t setup) {
-      return CsvTable::of_columns(readings.at(setup), "readings of " + declared_[setup].setup.name);
+      return CsvTable::of_columns(readings.at(setup), declared_[setup].setup.data);
     });
   }
 
@@ -130,7 +130,12 @@ class CampaignReader {
     setup.name = read_name(table);
     declared.instrument = &read_instrument(table);
     setup.instrument = declared.instrument->name;
-    if (!in_memory_) read_data(table, declared);
+    if (in_memory_) {
+      refuse_keys_of_files(table);
+      setup.data = "readings of " + setup.name;
+    } else {
+      read_data(table, declared);
+    }
     setup.tool = read_tool(table);
     setup.options = table.options(declared.instrument->keys);
     read_noise(table, *declared.instrument, setup);
@@ -139,6 +144,14 @@ class CampaignReader {
     declared.leave_out = read_leave_out(table);
     declared.directions_as_recorded = as_recorded(table).value_or(directions_as_recorded_);
     return declared;
+  }
+
+  static void refuse_keys_of_files(const TomlTable& table) {
+    for (const char* key : {"data", "delimiter", "decimal", "encoding", "skip_rows"}) {
+      if (table.has(key))
+        table.fail(key, std::string(key) + " says how a file is read, and the readings are arrays",
+                   std::string("leave ") + key + " out");
+    }
   }
 
   void read_data(const TomlTable& table, DeclaredSetup& declared) const {

@@ -5,12 +5,14 @@
 
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/bindings.h"
+#include "volcal/python/shared/option_words.h"
 
 namespace volcal::python {
 namespace {
 
 /// volcal.InputError, which is defined in Python.
-void raise_input_error(const InputError& error) {
+void raise_input_error(const InputError& thrown) {
+  const InputError error(thrown.place(), with_arguments(thrown.problem()), with_arguments(thrown.remedy()));
   const py::object type = py::module_::import("volcal").attr("InputError");
   const py::object value = type(text_of(error.problem()), text_of(error.remedy()),
                                 text_of(error.place().file), error.place().line, text_of(error.what()));

@@ -9,6 +9,7 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/python/result.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/long_work.h"
 
@@ -42,7 +43,7 @@ AxisPosition origin_of(const Machine& machine, const py::dict& given) {
     if (axis == machine.axes.end())
       throw InputError({}, "origin: " + key + " is not a position of an axis of the machine",
                        "give x_mm, y_mm, z_mm ...");
-    origin[index_of(axis->name)] = value.cast<double>() * position_unit(axis->name).si_per_unit;
+    origin[index_of(axis->name)] = number_of(value, "origin " + key) * position_unit(axis->name).si_per_unit;
   }
   return origin;
 }
@@ -62,6 +63,7 @@ Alignment wished_alignment(const Machine& machine, const std::string& primary, c
   if (!origin.empty()) alignment.origin = origin_of(machine, origin);
   if (spindle) {
     const std::array<double, 2> tilt = spindle_tilt_urad.value_or(std::array<double, 2>{});
+    for (const double angle : tilt) require_finite("spindle_tilt_urad", angle);
     alignment.spindle_tilt = Eigen::Vector2d(tilt[0] * kMicro, tilt[1] * kMicro);
   }
   return alignment;

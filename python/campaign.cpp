@@ -1,5 +1,6 @@
 #include "volcal/model/description/campaign.h"
 
+#include <fmt/format.h>
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
@@ -13,14 +14,13 @@
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/effect_keys.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/findings.h"
 #include "volcal/python/shared/long_work.h"
 
 namespace volcal::python {
 namespace {
-
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// A setup of a campaign that it keeps alive.
 struct SetupOf {
@@ -46,14 +46,10 @@ struct GivenReadings {
                        "give \"readings\": a mapping from column to array, as {\"x_mm\": [...], ...}");
     std::vector<NumberColumn>& of_setup = columns.emplace_back();
     for (const py::handle item : readings.attr("items")()) {
-      const auto [name, values] = item.cast<std::pair<std::string, py::object>>();
-      Doubles array = Doubles::ensure(values);
-      if (!array || array.ndim() != 1) {
-        PyErr_Clear();
-        throw InputError({"readings of " + setup, 0},
-                         "column " + name + " is not an array of numbers of one dimension",
-                         "give one number per reading");
-      }
+      const auto [key, values] = item.cast<std::pair<py::object, py::object>>();
+      const std::string file = "readings of " + setup;
+      const std::string name = text_key(key, file);
+      Doubles array = numbers_of(values, file, "column " + name, "give one number per reading");
       of_setup.push_back({name, {array.data(), static_cast<std::size_t>(array.size())}});
       arrays.push_back(std::move(array));
     }
@@ -71,9 +67,15 @@ std::shared_ptr<Campaign> campaign_of_arrays(const Machine& machine, const py::s
   std::string text = "format = \"" + std::string(kCampaignFormat) + "\"\n";
   if (!active_compensations.empty())
     text += "active_compensations = " + toml_text(active_compensations) + "\n";
-  if (!noise.is_none()) text += "[noise]\n" + toml_lines(noise);
+  if (!noise.is_none()) {
+    require_mapping(noise, "noise", "give a mapping as the table [noise], {\"constant_um\": 0.3}");
+    text += "[noise]\n" + toml_lines(noise);
+  }
   GivenReadings given;
-  for (const py::handle setup : setups) {
+  for (std::size_t i = 0; i < setups.size(); ++i) {
+    const py::object setup = setups[i];
+    require_mapping(setup, fmt::format("setup {}", i + 1),
+                    "give mappings with the keys of [[setups]], {\"name\": \"L\", \"readings\": {...}, ...}");
     given.add(name_in(setup), setup.attr("get")("readings"));
     text += "[[setups]]\n" + toml_lines(setup, {"readings"});
   }
@@ -95,6 +97,7 @@ void write_campaign_folder(const Campaign& campaign, const std::filesystem::path
 }
 
 std::vector<SetupOf> setups_of(const std::shared_ptr<Campaign>& campaign) {
+  if (campaign == nullptr) throw py::type_error("None is no Campaign");
   std::vector<SetupOf> setups;
   for (std::size_t i = 0; i < campaign->setups.size(); ++i) setups.push_back({campaign, i});
   return setups;
@@ -165,13 +168,16 @@ void define_campaign(py::module_& module) {
           "from_arrays", &campaign_of_arrays, py::arg("machine"), py::arg("setups"), py::kw_only(),
           py::arg("noise") = py::none(), py::arg("name") = "arrays", py::arg("active_compensations") = "",
           "Campaign of readings in memory, checked as those of files are.\n\n"
-          "setups: a sequence of mappings with the keys of a [[setups]] table of campaign.toml but `data` "
-          "(\"name\", \"instrument\", \"tool\", \"station_mm\", \"noise\" ...), and \"readings\": a mapping "
-          "from column to array of shape (n,), or a pandas DataFrame, columns named as in CSV files and in "
+          "setups: a sequence of mappings with the keys of a [[setups]] table of campaign.toml (\"name\", "
+          "\"instrument\", \"tool\", \"station_mm\", \"noise\" ...) but those of files (\"data\", "
+          "\"delimiter\", "
+          "\"decimal\", \"encoding\", \"skip_rows\"), and \"readings\": a mapping from column to array of "
+          "shape (n,), or a pandas DataFrame, columns named as in CSV files and in "
           "the units of their names (\"x_mm\", \"length_mm\", \"dir_x\", \"time_s\", \"T_air_degC\").\n"
           "noise: a mapping as the table [noise]. name: stands for the file in messages.\n"
-          "Arrays of float64 in one piece are read where they are, others converted first. Raises InputError "
-          "with the setup and the row, from 1.")
+          "Arrays of float64 in one piece are read where they are, others converted first; masked and "
+          "complex "
+          "ones are refused. Raises InputError with the setup and the row, from 1.")
       .def_property_readonly(
           "file", [](const Campaign& campaign) { return text_of(campaign.file); },
           "Path of campaign.toml, or the name that was given.")

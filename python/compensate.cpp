@@ -15,6 +15,7 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/python/result.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/long_work.h"
 
@@ -29,7 +30,8 @@ struct CompensatedProgram {
   ProgramCheck check;
 };
 
-Eigen::Vector3d in_metres(const Point_mm& point) {
+Eigen::Vector3d in_metres(const std::string& argument, const Point_mm& point) {
+  for (const double coordinate : point) require_finite(argument, coordinate);
   return Eigen::Vector3d(point[0], point[1], point[2]) * kMetrePerMillimetre;
 }
 
@@ -40,11 +42,15 @@ NcSetup setup_of(const Machine& machine, const std::map<std::string, Point_mm>& 
   for (const auto& [name, point] : work_offsets) {
     const auto index = work_offset_index(name);
     if (!index)
-      throw InputError({}, "work offset " + name + " is none", "there are G54 to G59, G59.1 to G59.3");
-    setup.work_offsets[*index] = in_metres(point);
+      throw InputError({}, "work_offsets: " + name + " is no work offset",
+                       "there are G54 to G59, G59.1 to G59.3");
+    setup.work_offsets[*index] = in_metres("work_offsets " + name, point);
   }
-  for (const auto& [number, length] : tool_lengths) setup.tool_lengths[number] = length * kMetrePerMillimetre;
-  if (start) setup.start = in_metres(*start);
+  for (const auto& [number, length] : tool_lengths) {
+    require_finite(fmt::format("tool_lengths {}", number), length);
+    setup.tool_lengths[number] = length * kMetrePerMillimetre;
+  }
+  if (start) setup.start = in_metres("start", *start);
   if (!units.empty() && units != "mm" && units != "inch")
     throw InputError({}, "units \"" + units + "\" are not known", "choose \"mm\" or \"inch\"");
   if (!units.empty()) setup.length_unit = units == "inch" ? kMetrePerInch : kMetrePerMillimetre;
@@ -139,7 +145,8 @@ void define_compensation(py::module_& module) {
       "before "
       "G20 or G21. block_delete: the control's switch. tolerance_um, arc_tolerance_um: of the corrected "
       "path. "
-      "decimals: of coordinates in mm. conditions: {\"T_air\": 23.3}. within_readings: refuse motions beyond "
+      "decimals: of coordinates in mm, 4 to 7. conditions: {\"T_air\": 23.3}. within_readings: refuse "
+      "motions beyond "
       "the "
       "measured positions. name: stands for the file in messages. Raises InputError with the line.");
 }

@@ -13,12 +13,11 @@
 #include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/effects/written_target.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 
 namespace volcal::python {
 namespace {
-
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// A parameter of the shape, in its edge unit.
 struct OwnParameter {
@@ -81,6 +80,8 @@ Eigen::VectorXd checked_values(const OwnEffect& effect, const SetupView& view, c
     refuse_driver(effect, view, "returned no array of shape (" + std::to_string(rows) + ",)",
                   "return one number per reading");
   }
+  if (const auto row = first_masked(returned))
+    refuse_driver(effect, view, "masks reading " + std::to_string(*row + 1), "return one number per reading");
   Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(array.data(), rows);
   if (!values.allFinite()) {
     refuse_driver(effect, view, "returned a value that is not finite",

@@ -86,10 +86,11 @@ py::dict validation_figures(const Campaign& campaign, const Result& result, int 
 }  // namespace
 
 void define_fit(py::module_& module) {
-  module.def("fit", &fit_campaign, py::arg("campaign"), py::arg("model") = py::none(), py::kw_only(),
-             py::arg("outliers") = "list", py::arg("robust") = "none", py::arg("solver") = "compressed",
-             py::arg("noise") = "auto", py::arg("threads") = 0, py::arg("keep_stated_sigma") = false,
-             py::arg("first_order") = false, py::arg("screening") = true, py::arg("progress") = py::none(),
+  module.def("fit", &fit_campaign, py::arg("campaign").none(false), py::arg("model") = py::none(),
+             py::kw_only(), py::arg("outliers") = "list", py::arg("robust") = "none",
+             py::arg("solver") = "compressed", py::arg("noise") = "auto", py::arg("threads") = 0,
+             py::arg("keep_stated_sigma") = false, py::arg("first_order") = false,
+             py::arg("screening") = true, py::arg("progress") = py::none(),
              "Identifies the errors of a machine from a campaign, as `volcal fit` does: the same numbers to "
              "the last bit.\n\n"
              "model: None = all 21 errors, cubic B-splines, automatic knots.\n"
@@ -102,8 +103,8 @@ void define_fit(py::module_& module) {
              "progress: called with the stage and the share of the work that is done, 0 to 1; what it raises "
              "ends the work, as "
              "does Ctrl-C when the next stage begins. Raises InputError.");
-  module.def("validate", &validation_figures, py::arg("campaign"), py::arg("result"), py::kw_only(),
-             py::arg("threads") = 0,
+  module.def("validate", &validation_figures, py::arg("campaign").none(false), py::arg("result"),
+             py::kw_only(), py::arg("threads") = 0,
              "How well a result predicts a campaign, as `volcal validate`: stations and other parameters of "
              "its setups "
              "are estimated anew, errors are not. rms_before, max_before (nominal machine), rms_after, "

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <map>
@@ -12,10 +13,13 @@
 #include "volcal/identify/io/results/montecarlo_writer.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/montecarlo_text.h"
+#include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/today.h"
+#include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/python/result.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/long_work.h"
 
@@ -43,10 +47,32 @@ void draw_blocks(MonteCarloStudy& study, double minutes,
   }
 }
 
+/// Whether a result was made from these readings, setup by setup.
+bool is_fit_of(const Campaign& campaign, const FitResult& result) {
+  return std::ranges::equal(campaign.setups, result.setups,
+                            [](const Setup& setup, const SetupSummary& fitted) {
+                              return readings_fingerprint(setup) == fitted.fingerprint;
+                            });
+}
+
+/// Draws need the readings that were adjusted, and the adjustment.
+void require_fit_of(const Campaign& campaign, const Result& of) {
+  const FitResult& result = of.result;
+  const std::string remedy = "give fit() of this campaign";
+  if (!result.alignment.empty())
+    throw InputError({}, "the result is aligned, and draws are of a fit", remedy + ", not aligned");
+  if (result.residuals.empty() || result.adjustment == nullptr)
+    throw InputError({}, "the result was read from files, without residuals", remedy);
+  if (of.campaign.get() != &campaign && !is_fit_of(campaign, result))
+    throw InputError({campaign.file, 0}, "the result is of another campaign", remedy);
+}
+
 Study draw_campaign(const Campaign& campaign, const Result& result, std::uint64_t draws, int digits,
                     std::uint64_t most_draws, std::uint64_t seed, const std::string& path,
                     const std::string& functions, int refits, int grid, int threads, double minutes,
                     const py::object& progress) {
+  require_fit_of(campaign, result);
+  require_not_negative("minutes", minutes);
   MonteCarloOptions options;
   options.path = draw_path(path);
   options.draws = draws;
@@ -148,7 +174,7 @@ void define_montecarlo(py::module_& module) {
                                    study.result.quantities.size(), study.result.draws));
       });
   module.def(
-      "montecarlo", &draw_campaign, py::arg("campaign"), py::arg("result"), py::kw_only(),
+      "montecarlo", &draw_campaign, py::arg("campaign").none(false), py::arg("result"), py::kw_only(),
       py::arg("draws") = std::uint64_t{0}, py::arg("digits") = 2,
       py::arg("most_draws") = std::uint64_t{10000000}, py::arg("seed") = std::uint64_t{1},
       py::arg("path") = "auto", py::arg("functions") = "drawn", py::arg("refits") = 20, py::arg("grid") = 3,

@@ -1,5 +1,6 @@
 #include "volcal/python/result.h"
 
+#include <fmt/format.h>
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/python/model.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/findings.h"
 #include "volcal/python/shared/long_work.h"
@@ -107,6 +109,7 @@ py::object column(const std::vector<ErrorTableRow>& rows, const Value& value) {
 py::dict error_table_of(const Result& result, int positions, const std::string& zero) {
   if (zero != "mean" && zero != "plus")
     throw InputError({}, "zero \"" + zero + "\" is not known", "choose \"mean\" or \"plus\"");
+  check_table_rows(positions);
   ErrorTableOptions options;
   options.positions = positions;
   options.zero_plus = zero == "plus";
@@ -125,8 +128,6 @@ py::dict error_table_of(const Result& result, int positions, const std::string& 
   return table;
 }
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
 /// Positions in mm and deg by column, axes that are not named at home.
 std::vector<AxisPosition> positions_of(const Machine& machine, const py::dict& given) {
   AxisPosition home{};
@@ -139,18 +140,16 @@ std::vector<AxisPosition> positions_of(const Machine& machine, const py::dict& g
     if (axis == machine.axes.end())
       throw InputError({}, key + " is not a position of an axis of the machine",
                        "give x_mm, y_mm, z_mm, c_deg ...");
-    const Doubles array = Doubles::ensure(values);
-    if (!array || array.ndim() != 1) {
-      PyErr_Clear();
-      throw InputError({}, key + " is not an array of numbers of one dimension", "give one number per point");
-    }
+    const Doubles array = numbers_of(values, {}, key, "give one number per point");
     const auto count = static_cast<std::size_t>(array.size());
     if (positions.empty()) positions.assign(count, home);
     if (positions.size() != count)
       throw InputError({}, key + " has another length than the positions before it",
                        "give one number per point");
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < count; ++i) {
+      require_finite(fmt::format("{} of point {}", key, i + 1), array.data()[i]);
       positions[i][index_of(axis->name)] = array.data()[i] * position_unit(axis->name).si_per_unit;
+    }
   }
   return positions;
 }
@@ -161,14 +160,18 @@ const Tool& tool_named(const Machine& machine, const std::string& name) {
   return tool_of(machine, options);
 }
 
+constexpr const char* kApproachRemedy = "give -1, 0 or 1 by axis: {\"X\": 1, \"Y\": -1}";
+
 ApproachDirection approach_of(const Machine& machine, const py::dict& given) {
   ApproachDirection direction{};
   for (const auto& [name, value] : given) {
     const std::string letter = py::str(name).cast<std::string>();
     const auto axis = letter.size() == 1 ? axis_from_letter(letter[0]) : std::nullopt;
-    const int sign = value.cast<int>();
-    if (!axis || !machine.has_axis(*axis) || sign < -1 || sign > 1)
-      throw InputError({}, "approach names no direction of the machine's axes", "give {\"X\": 1, \"Y\": -1}");
+    if (!axis || !machine.has_axis(*axis))
+      throw InputError({}, "approach: " + letter + " is not an axis of the machine", kApproachRemedy);
+    const double sign = number_of(value, "approach " + letter);
+    if (sign != -1.0 && sign != 0.0 && sign != 1.0)
+      throw InputError({}, fmt::format("approach {} is {:g}", letter, sign), kApproachRemedy);
     direction[index_of(*axis)] = static_cast<std::int8_t>(sign);
   }
   return direction;

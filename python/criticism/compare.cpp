@@ -271,7 +271,7 @@ void define_comparison(py::module_& module) {
                                    of.models.size() == 1 ? "a model" : "two models", of.campaign->file));
       });
   module.def(
-      "compare", &compare_models, py::arg("campaign"), py::arg("models"), py::kw_only(),
+      "compare", &compare_models, py::arg("campaign").none(false), py::arg("models"), py::kw_only(),
       py::arg("names") = std::vector<std::string>(), py::arg("held_out") = false, py::arg("worst") = 10,
       py::arg("threads") = 0, py::arg("progress") = py::none(),
       "One or two models on the readings of a campaign, stations and the like estimated anew, as `volcal "

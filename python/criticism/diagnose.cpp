@@ -216,10 +216,10 @@ void define_diagnosis(py::module_& module) {
   define_step(module);
   define_diagnosis_class(module);
   module.def(
-      "diagnose", &diagnose_campaign, py::arg("campaign"), py::arg("model") = py::none(), py::kw_only(),
-      py::arg("climb") = false, py::arg("threads") = 0, py::arg("leave_out") = std::vector<std::string>(),
-      py::arg("separate") = py::list(), py::arg("readings") = PlanningOptions{}.readings,
-      py::arg("progress") = py::none(),
+      "diagnose", &diagnose_campaign, py::arg("campaign").none(false), py::arg("model") = py::none(),
+      py::kw_only(), py::arg("climb") = false, py::arg("threads") = 0,
+      py::arg("leave_out") = std::vector<std::string>(), py::arg("separate") = py::list(),
+      py::arg("readings") = PlanningOptions{}.readings, py::arg("progress") = py::none(),
       "Where a model fails and which effect it lacks, as `volcal diagnose`: the same numbers to the last "
       "bit. Own "
       "effects (register_effect) are looked for too.\n\n"

@@ -97,8 +97,8 @@ void define_session(py::module_& module) {
       module, "Session",
       "A campaign under somebody's hands: look, try, add, watch the error fall. What the workbench and "
       "`volcal session` do, with the same numbers to the last bit.")
-      .def(py::init(&open_session), py::arg("campaign"), py::arg("model") = py::none(), py::kw_only(),
-           py::arg("heldout_share") = SessionOptions{}.heldout_share, py::arg("threads") = 0,
+      .def(py::init(&open_session), py::arg("campaign").none(false), py::arg("model") = py::none(),
+           py::kw_only(), py::arg("heldout_share") = SessionOptions{}.heldout_share, py::arg("threads") = 0,
            py::arg("progress") = py::none(),
            "Fits the model. heldout_share: of the lines, which judge and choose nothing. progress: as for "
            "fit(). Raises InputError.")

@@ -102,7 +102,7 @@ void define_trial(py::module_& module) {
           },
           "The text that str() gives, for notebooks.")
       .def("__repr__", [](const TriedOf& of) { return text_of("<volcal.TriedEffect " + of.effect + ">"); });
-  module.def("try_effect", &try_written, py::arg("campaign"), py::arg("effect"),
+  module.def("try_effect", &try_written, py::arg("campaign").none(false), py::arg("effect"),
              py::arg("model") = py::none(), py::kw_only(), py::arg("parameters") = std::vector<std::string>(),
              py::arg("threads") = 0, py::arg("progress") = py::none(),
              "Tries an effect of one's own, as `volcal try` (try is a word of Python's): its size, whether "

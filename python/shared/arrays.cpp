@@ -5,6 +5,7 @@
 
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/python/shared/arguments.h"
 
 namespace volcal::python {
 namespace {
@@ -18,7 +19,8 @@ std::string joined_values(const std::string& key, const py::handle& sequence) {
 std::string toml_table(const std::string& key, const py::handle& mapping) {
   std::string text;
   for (const py::handle item : mapping.attr("items")()) {
-    const auto [name, value] = item.cast<std::pair<std::string, py::object>>();
+    const auto [given, value] = item.cast<std::pair<py::object, py::object>>();
+    const std::string name = text_key(given, key);
     text += (text.empty() ? "" : ", ") + toml_text(name) + " = " + toml_value(key + "." + name, value);
   }
   return "{ " + text + " }";
@@ -73,7 +75,8 @@ std::string toml_value(const std::string& key, const py::handle& value) {
 std::string toml_lines(const py::handle& mapping, const std::vector<std::string>& without) {
   std::string text;
   for (const py::handle item : mapping.attr("items")()) {
-    const auto [key, value] = item.cast<std::pair<std::string, py::object>>();
+    const auto [given, value] = item.cast<std::pair<py::object, py::object>>();
+    const std::string key = text_key(given, "a mapping");
     if (std::ranges::find(without, key) == without.end() && !value.is_none())
       text += toml_text(key) + " = " + toml_value(key, value) + "\n";
   }

@@ -92,7 +92,8 @@ bool Climb::add_several() {
     reached_.rules().tell(SearchRule::NamesTogether);
     reached_.add(*best);
     reached_.test();
-    if (!reached_.state.tests().any_scan_exceeds() && explain_together(before.state.added().size())) return true;
+    if (!reached_.state.tests().any_scan_exceeds() && explain_together(before.state.added().size()))
+      return true;
   }
   reached_ = before;
   return false;

@@ -53,8 +53,7 @@ void Reached::begin_from(ModelState other) {
 
 void Reached::restart_with(const std::vector<FamilyTest>& effects) {
   const std::vector<AddedEffect>& added = state.added();
-  const auto differing =
-      std::ranges::mismatch(effects, added, have_same_columns, {}, &AddedEffect::test).in1;
+  const auto differing = std::ranges::mismatch(effects, added, have_same_columns, {}, &AddedEffect::test).in1;
   const auto kept = static_cast<std::size_t>(differing - effects.begin());
   if (kept == effects.size() && kept == added.size()) return;
   state = state.with_first(kept).value_or(base);

@@ -5,8 +5,8 @@
 
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/volume/error_budget.h"
-#include "volcal/identify/errors/volume/volume_points.h"
 #include "volcal/identify/errors/volume/remaining_error.h"
+#include "volcal/identify/errors/volume/volume_points.h"
 #include "volcal/identify/errors/volume/volumetric.h"
 
 namespace volcal::report {

@@ -243,7 +243,8 @@ TEST(WorkbenchDoors, PreparesWhatIsLikelyToBeAskedNext) {
   page.bench->wait_until_idle();
   EXPECT_THAT(told_of_work(page, *line), ::testing::IsEmpty()) << "it is there";
   page.told("add", {{"effect", kReversalOfX}});
-  while (page.state()["models"][1]["standing"] == "preview") std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  while (page.state()["models"][1]["standing"] == "preview")
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   page.told("undo");
   page.told("cancel");
   page.bench->wait_until_idle();

@@ -16,6 +16,9 @@ NAN = math.nan
 PROGRAM = "G21 G90\nG0 X0 Y0 Z-10\nG1 X100 F1000\nM2\n"
 
 
+masked: Callable[..., Any] = np.ma.array
+
+
 @functools.cache
 def fitted() -> tuple[volcal.Campaign, volcal.Result]:
     campaign = volcal.read_campaign(FOLDER / "campaign.toml")
@@ -67,10 +70,10 @@ class FromArrays(Fitted):
     def test_masked_readings(self) -> None:
         length = np.array(self.readings["length_mm"])
         mask = np.zeros(len(length), dtype=bool)
-        self.readings["length_mm"] = np.ma.array(length, mask=mask)
+        self.readings["length_mm"] = masked(length, mask=mask)
         self.campaign_of()
         mask[2] = True
-        self.readings["length_mm"] = np.ma.array(length, mask=mask)
+        self.readings["length_mm"] = masked(length, mask=mask)
         error = self.refused(self.campaign_of, "row 3", "length_mm", "masked", "leave out rows without a reading")
         self.assertEqual(error.line, 3)
 
@@ -106,7 +109,7 @@ class AtPoints(Fitted):
     def test_positions_are_finite(self) -> None:
         for value in (NAN, math.inf):
             self.refused(lambda: self.result.errors_at(x_mm=[0.0, value]), "x_mm of point 2")
-        self.refused(lambda: self.result.errors_at(x_mm=np.ma.array([0.0, 1.0], mask=[False, True])), "row 2 of x_mm is masked")
+        self.refused(lambda: self.result.errors_at(x_mm=masked([0.0, 1.0], mask=[False, True])), "row 2 of x_mm is masked")
         self.refused(lambda: self.result.errors_at(x_mm=np.array([1j])), "x_mm is complex")
 
     def test_directions(self) -> None:
@@ -153,7 +156,8 @@ class Tables(Fitted):
 
 class Programs(Fitted):
     def compensated(self, **more: Any) -> volcal.CompensatedProgram:
-        return volcal.compensate(self.result, PROGRAM, **{"work_offsets": {"G54": (0.0, 0.0, -100.0)}, **more})
+        arguments: dict[str, Any] = {"work_offsets": {"G54": (0.0, 0.0, -100.0)}, **more}
+        return volcal.compensate(self.result, PROGRAM, **arguments)
 
     def test_numbers_are_in_range(self) -> None:
         self.assertIn("X100.", self.compensated(decimals=5).text.replace("X99.", "X100."))

@@ -101,7 +101,7 @@ ModelState ModelState::with(const FamilyTest& effect) const {
 
 std::optional<ModelState> ModelState::with_first(std::size_t effects) const {
   const ModelStep& then = steps_.at(effects);
-  if (effects == added_.size() || then.removed != model_.removed().size()) return std::nullopt;
+  if (then.removed != model_.removed().size()) return std::nullopt;
   ModelState earlier = *this;
   earlier.tests_.reset();
   earlier.added_.resize(effects);

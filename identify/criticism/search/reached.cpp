@@ -56,7 +56,11 @@ void Reached::restart_with(const std::vector<FamilyTest>& effects) {
   const auto differing = std::ranges::mismatch(effects, added, have_same_columns, {}, &AddedEffect::test).in1;
   const auto kept = static_cast<std::size_t>(differing - effects.begin());
   if (kept == effects.size() && kept == added.size()) return;
-  state = state.with_first(kept).value_or(base);
+  if (kept == 0) {
+    state = base;
+  } else if (kept < added.size()) {
+    state = state.with_first(kept).value_or(base);
+  }
   open.reset();
   for (std::size_t i = state.added().size(); i < effects.size(); ++i) add(effects[i]);
 }

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "tests/support/search_states.h"
@@ -50,6 +51,19 @@ TEST_F(ModelStateOfReversal, AFurtherEffectGivesAnotherState) {
   EXPECT_FALSE(reached().is_tested());
   EXPECT_THROW(static_cast<void>(reached().tests()), std::logic_error);
   EXPECT_EQ(reached().first_column(0), given().projector().parameters());
+}
+
+/// As it was before the second effect came in, whatever that did to noise and smoothing.
+TEST_F(ModelStateOfReversal, GoesBackToItsFirstEffects) {
+  const FamilyTest& other = test_of(given(), {"reversal", "EXX", "dir_x", "step"});
+  const ModelState two = reached().with(other);
+  const std::optional<ModelState> again = two.with_first(1);
+  ASSERT_TRUE(again.has_value());
+  ASSERT_EQ(again->added().size(), 1U);
+  EXPECT_EQ(again->steps().size(), 2U);
+  EXPECT_EQ(again->added()[0].test.family, backlash().family);
+  EXPECT_EQ(again->residual(), reached().residual());
+  EXPECT_EQ(again->projector().residual_squares(), reached().projector().residual_squares());
 }
 
 /// Effects have no prior, and the model's columns stay as they are.

@@ -17,13 +17,13 @@ const headlineNow = (page) => page.evaluate(() => {
   return { error: Number(node.querySelector('.value').textContent.replace(/[^\d.]/g, '')), standing: node.dataset.standing, current: document.querySelector('.chip.current').dataset.model };
 });
 
-/** Once its number, which moves to a new value, stands still. */
+/** Once its number, which moves to a new value for 0.6 s, has stood still for longer than that. */
 export async function headline(page) {
   let last = await headlineNow(page);
-  for (let look = 0; look < 50; look += 1) {
+  for (let look = 0, still = 0; look < 50 && still < 4; look += 1) {
     await page.waitForTimeout(200);
     const now = await headlineNow(page);
-    if (now.error === last.error && now.current === last.current) return now;
+    still = now.error === last.error && now.current === last.current ? still + 1 : 0;
     last = now;
   }
   return last;

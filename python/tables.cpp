@@ -44,6 +44,9 @@ MadeTables tables_of(const Result& result, const std::string& format_name, const
                      const std::string& zero, const std::string& run, const py::dict& record) {
   if (zero != "mean" && zero != "plus")
     throw InputError({}, "zero \"" + zero + "\" is not known", "choose \"mean\" or \"plus\"");
+  if (step_mm != 0.0 && tolerance_um != 0.0)
+    throw InputError({}, "tolerance_um and step_mm are given, and each says where positions are",
+                     "leave one of the two out");
   const TableFormat& format = format_named(format_name);
   TableFormatOptions options;
   options.functions.positions = positions;

@@ -91,13 +91,10 @@ void report_more_than_none(MadeTables& made) {
 }
 
 /// 0 = the default.
-void check_tolerance(const TableFormatOptions& options, double tolerance) {
+void check_tolerance(double tolerance) {
   if (!std::isfinite(tolerance) || tolerance < 0.0)
     throw InputError({}, "--tolerance " + number_text(tolerance / kMetrePerMicrometre) + " is out of range",
                      "give a positive number of um");
-  if (tolerance > 0.0 && options.step != 0.0)
-    throw InputError({}, "--tolerance and --step are given, and each says where positions are",
-                     "leave one of the two out");
 }
 
 }  // namespace
@@ -107,7 +104,7 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
   MadeTables made;
   made.format = &format;
   made.options = options;
-  check_tolerance(options, tolerance);
+  check_tolerance(tolerance);
   check_table_options(format, result, made.options);
   const bool own_positions = format.positions_of_own && tolerance == 0.0;
   const double wanted = tolerance > 0.0 ? tolerance : kDefaultTableTolerance;

@@ -33,7 +33,7 @@ struct MadeTables {
 /// `options.step` and `options.rotary_step` 0: the largest round steps at which the tables follow the ideal
 /// compensation within `tolerance`, m, 0 = kDefaultTableTolerance, as near as choose_step() and
 /// choose_rotary_step() come; a format with positions of its own keeps those where no tolerance is given.
-/// Throws InputError, also for a tolerance beside a step.
+/// Throws InputError.
 MadeTables make_tables(const TableFormat& format, const FitResult& result, const TableFormatOptions& options,
                        double tolerance = 0.0);
 

@@ -89,7 +89,7 @@ std::string words_of(const GenericTest& test) {
   finding.direction = test.direction.value();
   finding.rotation = test.rotation;
   finding.period = test.period;
-  return finding.placeholder() + ", along " + finding.action();
+  return finding.in_words() + ", along " + finding.action();
 }
 
 void consider_families(const LinearModel& model, const std::vector<Family>& families,

@@ -181,7 +181,7 @@ Json models_json(const Session& session) {
 
 Json unknown_json(const UnknownFinding& finding, std::size_t number_of_it) {
   return {{"number", number_of_it},
-          {"label", finding.placeholder() + " along " + finding.action()},
+          {"label", finding.in_words() + " along " + finding.action()},
           {"words", sentence(unnamed(finding))},
           {"variables", names_of(finding.variables)},
           {"with_one_of", names_of(finding.with_one_of)},

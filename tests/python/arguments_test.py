@@ -1,6 +1,5 @@
 """Arguments that cannot be meant are refused by name."""
 
-import functools
 import math
 import unittest
 from collections.abc import Callable
@@ -9,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import volcal
-from support import HIDDEN, Case, coarse, setups_as_arrays
+from support import HIDDEN, FittedCase, setups_as_arrays
 
 FOLDER = HIDDEN / "21"
 NAN = math.nan
@@ -19,20 +18,7 @@ PROGRAM = "G21 G90\nG0 X0 Y0 Z-10\nG1 X100 F1000\nM2\n"
 masked: Callable[..., Any] = np.ma.array
 
 
-@functools.cache
-def fitted() -> tuple[volcal.Campaign, volcal.Result]:
-    campaign = volcal.read_campaign(FOLDER / "campaign.toml")
-    return campaign, volcal.fit(campaign, coarse(campaign), noise="white", screening=False)
-
-
-class Fitted(Case):
-    campaign: volcal.Campaign
-    result: volcal.Result
-
-    @classmethod
-    def setUpClass(cls) -> None:
-        cls.campaign, cls.result = fitted()
-
+class Fitted(FittedCase):
     def of_type(self, what: Callable[[], object]) -> None:
         with self.assertRaises(TypeError):
             what()

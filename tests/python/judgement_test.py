@@ -1,6 +1,5 @@
 """Alignment, budgets, comparisons, effects that are tried, certificates: the numbers of the command line."""
 
-import functools
 import json
 import unittest
 from typing import Any
@@ -8,26 +7,13 @@ from typing import Any
 import numpy as np
 
 import volcal
-from support import HIDDEN, SOURCE, Case, coarse, run_program, without_times
+from support import HIDDEN, SOURCE, FittedCase, coarse, run_program, without_times
 
 FOLDER = HIDDEN / "21"
 FILE = FOLDER / "campaign.toml"
 
 
-@functools.cache
-def fitted() -> tuple[volcal.Campaign, volcal.Result]:
-    campaign = volcal.read_campaign(FILE)
-    return campaign, volcal.fit(campaign, coarse(campaign), noise="white", screening=False)
-
-
-class Fitted(Case):
-    campaign: volcal.Campaign
-    result: volcal.Result
-
-    @classmethod
-    def setUpClass(cls) -> None:
-        cls.campaign, cls.result = fitted()
-
+class Fitted(FittedCase):
     def setUp(self) -> None:
         super().setUp()
         self.folder_of_result = self.folder / "result"

@@ -1,5 +1,6 @@
 """What the tests of the Python module share."""
 
+import functools
 import os
 import pathlib
 import subprocess
@@ -69,6 +70,24 @@ def setups_as_arrays(campaign: volcal.Campaign, folder: pathlib.Path) -> list[di
 def coarse(campaign: volcal.Campaign) -> volcal.Model:
     """A model of few parameters: a fit takes a tenth of a second."""
     return volcal.Model.parse(COARSE, campaign.machine)
+
+
+@functools.cache
+def white_fit(file: pathlib.Path) -> tuple[volcal.Campaign, volcal.Result]:
+    """A campaign and a fit of few parameters, once for all tests of a program."""
+    campaign = volcal.read_campaign(file)
+    return campaign, volcal.fit(campaign, coarse(campaign), noise="white", screening=False)
+
+
+class FittedCase(Case):
+    """One campaign, datasets/hidden/21, with its fit, for all tests."""
+
+    campaign: volcal.Campaign
+    result: volcal.Result
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.campaign, cls.result = white_fit(HIDDEN / "21" / "campaign.toml")
 
 
 def csv_table(path: pathlib.Path) -> NDArray[np.void]:

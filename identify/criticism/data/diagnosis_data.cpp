@@ -43,7 +43,7 @@ std::string UnknownFinding::dependence() const {
   return text;
 }
 
-std::string UnknownFinding::placeholder() const { return "something that depends on " + dependence(); }
+std::string UnknownFinding::in_words() const { return "something that depends on " + dependence(); }
 
 std::string UnknownFinding::action() const {
   std::string text(name_of(direction));

@@ -66,7 +66,7 @@ struct UnknownFinding {
   /// "x", "x and z", or "dir_x and one of T_air, T_column".
   std::string dependence() const;
   /// "something that depends on x and z": in the place of a name.
-  std::string placeholder() const;
+  std::string in_words() const;
   /// "X", "X, as EBX", or "X, every 10.02 mm".
   std::string action() const;
 };

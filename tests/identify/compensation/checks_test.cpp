@@ -17,6 +17,7 @@
 #include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/errors/stated_errors.h"
+#include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/identify/errors/volume/volumetric.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/effects/effect_keys.h"
@@ -128,6 +129,22 @@ TEST(ErrorLeft, SeesWavesOfAnyPeriod) {
     const ErrorLeft left = error_left(result.machine, volume_points(result.machine, kVolumeCells), errors);
     EXPECT_NEAR(left.rms, 5e-6 / std::numbers::sqrt2, 0.2e-6) << period;
     EXPECT_GT(left.max, 4.8e-6) << period;
+  }
+}
+
+/// One volume, whoever judges it.
+TEST(ErrorLeft, IsBeforeTablesWhatTheBudgetSays) {
+  for (const EffectSpec& effect :
+       {effect_spec("lead-error",
+                    {{"symbol", std::string("EYX")}, {"period", 0.3}, {"cos", 5e-6}, {"sin", 0.0}}),
+        effect_spec("reversal", {{"symbol", std::string("EXX")}, {"amplitude", 6e-6}})}) {
+    const FitResult result = stated(effect);
+    const Tool& tool = result.machine.tools.front();
+    const BudgetLine whole = error_budget(result, tool, default_conditions(result), kVolumeCells).total;
+    const ErrorLeft before = tables_of(result, "csv", CompensationType::volumetric()).check.before;
+    EXPECT_GT(before.rms, 1e-6) << effect.kind;
+    EXPECT_NEAR(before.rms, whole.rms, 1e-12) << effect.kind;
+    EXPECT_NEAR(before.max, whole.max, 1e-12) << effect.kind;
   }
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <string>
+#include <vector>
 
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
@@ -58,6 +59,23 @@ TEST(ErrorBudget, IsTheHandCalculation) {
                   line_named(budget.causes, "effects beyond the rigid body").share,
               1.0, 1e-9);
   EXPECT_GE(budget.contributions[0].rms, budget.contributions[1].rms);
+}
+
+/// No table holds what a temperature moves: the line says that it depends on one, by its channel.
+TEST(ErrorBudget, SaysThatTheExpansionOfAScaleDependsOnItsTemperature) {
+  Machine machine = machine_with_a_tool();
+  machine.axes[0].expansion = ScaleExpansion{10e-6, 0.0, "front scale"};
+  const FitResult result = testing::result_with(machine, {}, 20);
+  Conditions conditions;
+  conditions.temperature_degC["front scale"] = 22.0;
+  const ErrorBudget budget = error_budget(result, machine.tools[0], conditions, kCells);
+  const BudgetLine& line = line_named(budget.contributions, "expansion X");
+  const std::vector<Variable> wanted = {position_of(AxisName::X), temperature_of("front scale")};
+  EXPECT_EQ(line.depends_on, wanted);
+  EXPECT_EQ(line.depends_on_text(), "x T_front scale");
+  EXPECT_TRUE(std::ranges::any_of(line.depends_on, &Variable::changes_at_rest));
+  // 20e-6 over 1 m, a straight line: its root mean square is the length over sqrt(12).
+  EXPECT_NEAR(line.rms, 20e-6 / std::sqrt(12.0), 0.01 * 20e-6);
 }
 
 /// Eight waves over the travel are zero at nine positions with equal distances; a bump of 20 mm lies between

@@ -26,6 +26,23 @@ using testing_support::Poses;
 using testing_support::random_poses;
 using testing_support::result_of_model;
 
+/// EAY that goes with the height, its coefficient alone not 0: an error function is zero at home, which
+/// random coefficients are not.
+FitResult result_of_coupling(const std::string& shape, const std::string& amplitude, double value) {
+  std::mt19937_64 random(8);
+  EffectSpec effect;
+  effect.kind = "axis-coupling";
+  effect.options.set("symbol", std::string("EAY"));
+  effect.options.set("axis", std::string("Z"));
+  effect.options.set("shape", shape);
+  const Campaign campaign = effect_campaign();
+  const MeasurementModel model(campaign, model_with(effect));
+  FitResult result = result_of_model(model, random);
+  result.parameters.setZero();
+  result.parameters[result.layout.find_block(amplitude)->offset] = value;
+  return result;
+}
+
 /// What is left of EAY by y z is orthogonal to what the rotation of Y about x does to the axis behind it, and
 /// to every displacement of Y.
 TEST(RigidCompromise, IsTheLeastSquaresOne) {
@@ -76,19 +93,10 @@ TEST(RigidCompromise, IsTheLeastSquaresOne) {
 }
 
 TEST(RigidCompromise, TablesOfErrorsWithItLeaveLessThanWithout) {
-  std::mt19937_64 random(8);
-  const Campaign campaign = effect_campaign();
-  EffectSpec effect;
-  effect.kind = "axis-coupling";
-  effect.options.set("symbol", std::string("EAY"));
-  effect.options.set("axis", std::string("Z"));
-  effect.options.set("shape", std::string("quadratic"));
-  const MeasurementModel model(campaign, model_with(effect));
-  FitResult result = result_of_model(model, random);
-  result.parameters.setZero();  // an error function is zero at home, which random coefficients are not
-  result.parameters[result.layout.find_block("EAY by z^2")->offset] = 3e-4;
+  const FitResult result = result_of_coupling("quadratic", "EAY by z^2", 3e-4);
   FitResult rigid = result;
   rigid.identified.effects.clear();
+  std::mt19937_64 random(8);
   const Poses poses = random_poses(result.machine, random, 300);
   const auto left = [&](const FitResult& tables_of) {
     const TableFormat& format = *find_table_format("csv");
@@ -109,17 +117,7 @@ TEST(RigidCompromise, TablesOfErrorsWithItLeaveLessThanWithout) {
 /// EAY = a z moves the axis behind it by functions of z alone, so that tables hold all of it; as every error
 /// they are zero at home, where the machine is right.
 TEST(RigidCompromise, IsZeroAtHomeAndHoldsWhatOneAxisCan) {
-  std::mt19937_64 random(9);
-  EffectSpec effect;
-  effect.kind = "axis-coupling";
-  effect.options.set("symbol", std::string("EAY"));
-  effect.options.set("axis", std::string("Z"));
-  effect.options.set("shape", std::string("linear"));
-  const Campaign campaign = effect_campaign();
-  const MeasurementModel model(campaign, model_with(effect));
-  FitResult result = result_of_model(model, random);
-  result.parameters.setZero();
-  result.parameters[result.layout.find_block("EAY by z")->offset] = 50e-6;
+  const FitResult result = result_of_coupling("linear", "EAY by z", 50e-6);
   int at_home = 0;
   for (const ErrorTableRow& row : error_table(result)) {
     if (!row.axis || row.position != result.machine.axis(*row.axis).home) continue;
@@ -132,6 +130,7 @@ TEST(RigidCompromise, IsZeroAtHomeAndHoldsWhatOneAxisCan) {
   options.step = 0.01;
   const CompensationTables tables = format.read(write_tables(format, result, options));
   const DisplacementField truth = displacement_field(result, result.machine.tools[0], {});
+  std::mt19937_64 random(9);
   const Poses poses = random_poses(result.machine, random, 50);
   for (const AxisPosition& position : poses.positions)
     EXPECT_LT((truth(position, {}) + tables.correction(position, {}).linear).norm(), 5e-9);

@@ -135,7 +135,7 @@ Json after_json(const Diagnosis& diagnosis) {
     lines.push_back(
         fmt::format("Still seen by the scan without a catalogue: {}, along {}, "
                     "about {} RMS (log10 p {:.1f}).",
-                    unknown.placeholder(), unknown.action(), micrometres(unknown.rms), unknown.log10_p));
+                    unknown.in_words(), unknown.action(), micrometres(unknown.rms), unknown.log10_p));
     if (lines.size() == 5) break;
   }
   return lines;

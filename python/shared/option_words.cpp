@@ -69,9 +69,10 @@ constexpr std::array kArguments = std::to_array<std::pair<std::string_view, std:
     {"work-offset", "work_offsets"},
 });
 
-/// An option, or a line of the command line with its options, to the end of a part of the sentence.
+/// An option, or a line of the command line with its options, to the end of a part of the sentence. Not what
+/// stands within a word, as in the name of a file.
 const std::regex& options() {
-  static const std::regex options(R"(volcal [a-z]+[^;,)]*|--([a-z]+(-[a-z]+)*))");
+  static const std::regex options(R"(volcal [a-z]+[^;,)]*|\B--([a-z]+(-[a-z]+)*))");
   return options;
 }
 

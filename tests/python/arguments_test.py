@@ -193,5 +193,13 @@ class Draws(Fitted):
         self.assertIn("status", str(read))
 
 
+class Messages(FittedCase):
+    def test_options_become_arguments_and_names_of_files_stay(self) -> None:
+        text = str(self.refused(lambda: volcal.tables(self.result, tool="zz"), "tool zz"))
+        self.assertNotIn("--tool", text)
+        name = str(self.folder / "my--tool.toml")
+        self.refused(lambda: volcal.read_campaign(name), "my--tool.toml")
+
+
 if __name__ == "__main__":
     unittest.main()

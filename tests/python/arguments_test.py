@@ -1,6 +1,7 @@
 """Arguments that cannot be meant are refused by name."""
 
 import math
+import re
 import unittest
 from collections.abc import Callable
 from typing import Any
@@ -197,8 +198,12 @@ class Messages(FittedCase):
     def test_options_become_arguments_and_names_of_files_stay(self) -> None:
         text = str(self.refused(lambda: volcal.tables(self.result, tool="zz"), "tool zz"))
         self.assertNotIn("--tool", text)
-        name = str(self.folder / "my--tool.toml")
-        self.refused(lambda: volcal.read_campaign(name), "my--tool.toml")
+        declared = (FOLDER / "campaign.toml").read_text()
+        machine = f'machine = "{FOLDER / "machine.toml"}"'
+        named = re.sub(r'^machine = .*$', machine, re.sub(r'data = "[^"]*"', 'data = "my--tool.csv"', declared), flags=re.M)
+        file = self.folder / "campaign.toml"
+        file.write_text(named)
+        self.refused(lambda: volcal.read_campaign(file), "my--tool.csv")
 
 
 if __name__ == "__main__":

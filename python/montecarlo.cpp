@@ -184,7 +184,8 @@ void define_montecarlo(py::module_& module) {
       "the same bits for any number of threads. `result` must come from fit() of this campaign.\n\n"
       "draws: 0 = until `digits` of every uncertainty are right, at most `most_draws` and `minutes` (0 = no "
       "limit). path: \"auto\", \"linear\", \"chord\", \"refit\". functions: \"drawn\" or \"fixed\". refits: "
-      "sample on which the paths are compared. grid: points of the volume per axis, 0 = none.\n"
+      "sample on which the paths are compared. grid: points per axis whose errors are listed, 0 = nothing of "
+      "the volume.\n"
       "progress: called with the stage and the share of the work that is done, 0 to 1; what it raises ends "
       "the "
       "work, as does Ctrl-C between two blocks of draws. Raises InputError.");

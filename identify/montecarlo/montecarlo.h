@@ -41,7 +41,7 @@ struct MonteCarloOptions {
   std::uint64_t seed = 1;
   int threads = 0;        ///< 0 = as many as the machine has
   int refits = 20;        ///< sample on which the paths are compared
-  int grid_per_axis = 3;  ///< points of the volume
+  int grid_per_axis = 3;  ///< points of the volume whose errors are listed; 0 = nothing of the volume
   DrawnSources sources;
   std::optional<Conditions> conditions =
       {};                    ///< of table values and the volume; default_conditions() when absent

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/volume/volume_points.h"
 #include "volcal/identify/result/surface_values.h"
 #include "volcal/model/description/units.h"
 
@@ -14,6 +14,8 @@ namespace volcal {
 namespace {
 
 constexpr double kExact = 1e-9;  // of the largest uncertainty of the same unit: known by the datum
+
+constexpr double kVaries = 1e-24;  // m^2: above 1 pm
 
 constexpr const char* kVectorNames[] = {"ex", "ey", "ez"};
 
@@ -101,65 +103,45 @@ void add_surfaces(const FitResult& result, QuantityList& list) {
 }
 
 Quantity of_volume(QuantityKind kind, const std::string& name, const std::string& tool, double estimate) {
-  return {
-
-      .kind = kind,
-      .name = name,
-      .axis = {},
-      .tool = tool,
-      .at = {},
-      .unit = "um",
-      .si_per_unit = kMicro,
-      .estimate = estimate};
+  return {.kind = kind,
+          .name = name,
+          .axis = {},
+          .tool = tool,
+          .at = {},
+          .unit = "um",
+          .si_per_unit = kMicro,
+          .estimate = estimate};
 }
 
-/// Derivatives of the root mean square and of the largest length about the estimate. `rows`: of ex, ey, ez.
-void add_sizes(const Eigen::MatrixXd& rows, QuantitySet::Volume& volume, QuantityList& list) {
-  const VolumeSizes sizes = volume_sizes(volume.error);
-  const Eigen::Index points = volume.error.size() / 3;
-  Eigen::Index furthest = 0;
-  for (Eigen::Index i = 0; i < points; ++i) {
-    if (volume.error.segment<3>(3 * i).norm() >= sizes.largest) furthest = i;
-  }
-  const auto share = [](double size) { return size > 0.0 ? 1.0 / size : 0.0; };
-  volume.rms = list.items.size();
-  list.add(of_volume(QuantityKind::VolumetricRms, "rms", volume.tool, sizes.rms),
-           rows.transpose() * volume.error * (share(sizes.rms) / static_cast<double>(points)));
-  volume.largest = list.items.size();
-  list.add(of_volume(QuantityKind::VolumetricMax, "max", volume.tool, sizes.largest),
-           rows.middleRows<3>(3 * furthest).transpose() * volume.error.segment<3>(3 * furthest) *
-               share(sizes.largest));
-}
-
-/// Nothing where nothing in the volume varies.
-std::optional<QuantitySet::Volume> added_volume(const FitResult& result, const Tool& tool,
-                                                const Conditions& conditions, int per_axis,
-                                                QuantityList& list) {
-  const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
-  const auto size = 3 * static_cast<Eigen::Index>(positions.size());
-  QuantitySet::Volume volume{.tool = tool.name, .error = Eigen::VectorXd(size), .components = {}};
-  Eigen::MatrixXd rows(size, result.layout.size);
+/// Whether anything varies on the grid.
+bool add_grid(const FitResult& result, const Tool& tool, const Conditions& conditions, int per_axis,
+              QuantityList& list) {
   const ErrorField field(result, tool, conditions);
   const std::size_t before = list.items.size();
-  Eigen::Index row = 0;
-  for (const AxisPosition& position : positions) {
-    rows.middleRows<3>(row) = field.unheld_rows(position).topRows<3>();
-    volume.error.segment<3>(row) = field.at(position).head<3>();
-    for (const char* name : kVectorNames) {
-      const Eigen::VectorXd derivatives = rows.row(row);
+  for (const AxisPosition& position : grid_positions(result.machine, per_axis)) {
+    const PoseErrorRows rows = field.unheld_rows(position);
+    const PoseErrorVector error = field.at(position);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const Eigen::VectorXd derivatives = rows.row(k);
       const double variance = derivatives.dot(result.covariance * derivatives);
-      const bool varies = variance > 1e-24;  // above 1 pm
-      volume.components.push_back(varies ? std::optional(list.items.size()) : std::nullopt);
-      if (varies) {
-        Quantity quantity = of_volume(QuantityKind::VolumetricError, name, volume.tool, volume.error[row]);
-        quantity.at = position;
-        list.add(std::move(quantity), derivatives);
-      }
-      ++row;
+      if (!(variance > kVaries)) continue;
+      Quantity quantity = of_volume(QuantityKind::VolumetricError, kVectorNames[k], tool.name, error[k]);
+      quantity.at = position;
+      list.add(std::move(quantity), derivatives);
     }
   }
-  if (list.items.size() == before) return std::nullopt;
-  add_sizes(rows, volume, list);
+  return list.items.size() > before;
+}
+
+QuantitySet::Volume added_size(const FitResult& result, const Tool& tool, const Conditions& conditions,
+                               QuantityList& list) {
+  QuantitySet::Volume volume{.tool = tool.name, .size = {result, tool, conditions, kVolumeCells}};
+  volume.rms = list.items.size();
+  list.add(of_volume(QuantityKind::VolumetricRms, "rms", tool.name, volume.size.rms()),
+           volume.size.rms_row());
+  volume.largest = list.items.size();
+  list.add(of_volume(QuantityKind::VolumetricMax, "max", tool.name, volume.size.largest()),
+           volume.size.largest_row());
   return volume;
 }
 
@@ -195,17 +177,6 @@ std::string Quantity::words() const {
                      (*at)[1] / kMetrePerMillimetre, (*at)[2] / kMetrePerMillimetre);
 }
 
-VolumeSizes volume_sizes(const Eigen::Ref<const Eigen::VectorXd>& vectors) {
-  double squares = 0.0, largest = 0.0;
-  for (Eigen::Index i = 0; i < vectors.size(); i += 3) {
-    const double square = vectors.segment<3>(i).squaredNorm();
-    squares += square;
-    largest = std::max(largest, square);
-  }
-  const Eigen::Index points = vectors.size() / 3;
-  return {points > 0 ? std::sqrt(squares / static_cast<double>(points)) : 0.0, std::sqrt(largest)};
-}
-
 QuantitySet quantities_of(const FitResult& result, int grid_per_axis,
                           const std::optional<Conditions>& given) {
   const Conditions conditions = given ? *given : default_conditions(result);
@@ -216,8 +187,8 @@ QuantitySet quantities_of(const FitResult& result, int grid_per_axis,
   QuantitySet set;
   for (const Tool& tool : result.machine.tools) {
     if (grid_per_axis <= 0) break;
-    if (auto volume = added_volume(result, tool, conditions, grid_per_axis, list))
-      set.volumes.push_back(std::move(*volume));
+    if (add_grid(result, tool, conditions, grid_per_axis, list))
+      set.volumes.push_back(added_size(result, tool, conditions, list));
   }
   set.items = std::move(list.items);
   set.rows = list.rows();

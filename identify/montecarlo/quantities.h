@@ -1,8 +1,8 @@
 #pragma once
 /// What a Monte Carlo study gives distributions of: every value of the error tables, every other parameter
 /// (effects, tool offsets, expansions, stations, dead paths), the largest value of every surface, volumetric
-/// errors on a grid over the travel for every tool, and of each tool their root mean square and their
-/// largest, which are not linear.
+/// errors on a grid over the travel for every tool, and of each tool the root mean square and the largest
+/// error of the volume as budgets judge it, which are not linear.
 
 #include <Eigen/Core>
 #include <optional>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "volcal/identify/errors/conditions.h"
+#include "volcal/identify/errors/volume/volume_size.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/model/kinematics/chain.h"
 
@@ -39,28 +40,19 @@ struct QuantitySet {
   std::vector<Quantity> items;
   /// Derivatives to the parameters, quantities x layout.size; of rms and max about the estimate.
   Eigen::MatrixXd rows;
-  /// The volume of one tool: ex, ey, ez of its points.
+  /// The volume of one tool.
   struct Volume {
     std::string tool;
-    Eigen::VectorXd error;  ///< of the fit, 3 points, m
-    /// Which quantity each of them is; none where it does not vary, which is at points that the datum holds.
-    std::vector<std::optional<std::size_t>> components;
+    VolumeSize size;
     std::size_t rms = 0;  ///< index of the quantity
     std::size_t largest = 0;
   };
   std::vector<Volume> volumes;
 };
 
-/// `grid_per_axis`: points of the volume per linear axis; 0 leaves the volume out. At these conditions, the
+/// `grid_per_axis`: points of the grid per linear axis; 0 leaves the volume out. At these conditions, the
 /// default ones where none are given.
 QuantitySet quantities_of(const FitResult& result, int grid_per_axis,
                           const std::optional<Conditions>& conditions = {});
-
-/// Root mean square and largest length of vectors x y z x y z ...
-struct VolumeSizes {
-  double rms = 0.0;
-  double largest = 0.0;
-};
-VolumeSizes volume_sizes(const Eigen::Ref<const Eigen::VectorXd>& vectors);
 
 }  // namespace volcal

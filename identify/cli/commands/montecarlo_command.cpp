@@ -310,7 +310,8 @@ void define_draws(CLI::App& app, MonteCarloOptions& options) {
   app.add_option("--refits", options.refits, "sample of draws on which the paths are held to full refits")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  app.add_option("--grid", options.grid_per_axis, "points of the volume per linear axis; 0 = no volume")
+  app.add_option("--grid", options.grid_per_axis,
+                 "points per linear axis whose errors are listed; 0 = nothing of the volume")
       ->check(CLI::Range(0, 11))
       ->capture_default_str();
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
@@ -39,43 +38,6 @@ struct CauseOf {
   }
 };
 
-/// Positions of rotary axes, one set after another, spread evenly and without a period in common with a grid
-/// of other axes: multiples of powers of the inverse of the root of x^7 = x + 1, less whole numbers (additive
-/// recurrence). Every axis is approached from either side as often.
-class SpreadRotaryAxes {
- public:
-  SpreadRotaryAxes(const Machine& machine, std::vector<AxisName> axes)
-      : machine_(machine), axes_(std::move(axes)) {
-    double root = 1.0;
-    for (int k = 0; k < kIterations; ++k) root = std::pow(1.0 + root, 1.0 / kPower);
-    step_ = 1.0 / root;
-  }
-  const std::vector<AxisName>& axes() const { return axes_; }
-
-  void place(std::size_t number, AxisPosition& position, ApproachDirection& direction) const {
-    double step = 1.0;
-    const auto next = [&] {
-      step *= step_;
-      const double share = 0.5 + static_cast<double>(number) * step;
-      return share - std::floor(share);
-    };
-    for (const AxisName name : axes_) {
-      const Axis& axis = machine_.axis(name);
-      const double span = std::min(axis.travel(), 2.0 * std::numbers::pi);
-      position[index_of(name)] = axis.travel_min + next() * span;
-      direction[index_of(name)] = next() < 0.5 ? -1 : 1;
-    }
-  }
-
- private:
-  static constexpr double kPower = 7.0;  // one more than dimensions: position and approach of three axes
-  static constexpr int kIterations = 60;
-
-  const Machine& machine_;
-  std::vector<AxisName> axes_;
-  double step_ = 0.0;
-};
-
 /// The displacements of every contribution at the poses of the volume.
 class VolumeOfParts {
  public:
@@ -87,32 +49,23 @@ class VolumeOfParts {
         parts_(field_.contributions()),
         chain_(result.machine),
         offset_t_(tool.offset),
-        turned_(result.machine,
-                rotary == RotaryPoses::AtRest ? std::vector<AxisName>() : identified_rotary_axes(result)) {
+        turned_(rotary == RotaryPoses::AtRest ? std::vector<AxisName>() : identified_rotary_axes(result)) {
     fields_.resize(parts_.size());
     VolumeMoments moments(result.parameters.size());
-    std::vector<AxisName> axes = result.machine.main_linear_axes();
-    for (const AxisName axis : result.machine.parallel_axes()) axes.push_back(axis);
-    const auto add_approaches = [&](const AxisPosition& place, bool inside) {
-      for (unsigned signs = 0; signs < 1U << axes.size(); ++signs) {
-        ApproachDirection direction{};
-        for (std::size_t i = 0; i < axes.size(); ++i)
-          direction[index_of(axes[i])] = ((signs >> i) & 1U) != 0 ? 1 : -1;
-        AxisPosition pose = place;
-        turned_.place(points_.size(), pose, direction);
-        add(pose, direction);
-        if (inside) add_uncertainty(pose, direction, moments);
-      }
-    };
-    for (const AxisPosition& place : spread_places(result.machine, axes, cells_per_axis))
-      add_approaches(place, true);
-    inside_ = points_.size();
-    for (const AxisPosition& place : ends_of_travel(result.machine, axes)) add_approaches(place, false);
+    const std::vector<VolumePoint> poses =
+        turned_.empty() ? volume_poses(result.machine, field_.effects().directed_axes(), cells_per_axis)
+                        : turned_volume_poses(result.machine, turned_, cells_per_axis);
+    for (const VolumePoint& pose : poses) {
+      add(pose.position, pose.direction);
+      if (!pose.inside) continue;
+      ++inside_;
+      add_uncertainty(pose.position, pose.direction, moments);
+    }
     if (is_uncertain_) moments_ = moments.mean();
   }
 
   const std::vector<Contribution>& parts() const { return parts_; }
-  const std::vector<AxisName>& turned() const { return turned_.axes(); }
+  const std::vector<AxisName>& turned() const { return turned_; }
   Field field(std::size_t part) const { return without_rigid_motion(points_, fields_[part], inside_); }
   std::size_t size() const { return points_.size(); }
   /// The first of them, which count in means; at the others, the ends of travel, the largest error is sought.
@@ -172,7 +125,7 @@ class VolumeOfParts {
   std::vector<Contribution> parts_;
   KinematicChain chain_;
   Vector3d offset_t_;
-  SpreadRotaryAxes turned_;
+  std::vector<AxisName> turned_;
   Field points_;
   std::size_t inside_ = 0;
   std::vector<Field> fields_;

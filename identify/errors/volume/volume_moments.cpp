@@ -10,15 +10,14 @@ namespace {
 
 constexpr double kUndetermined = 1e-12;  // of the largest eigenvalue of the rigid motions' moments
 
-/// Displacement of a point per unit of a translation and a rotation: t + w x p.
+}  // namespace
+
 Eigen::Matrix<double, 3, 6> rigid_motion_rows(const Eigen::Vector3d& point) {
   Eigen::Matrix<double, 3, 6> rows;
   rows << Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero();
   for (int k = 0; k < 3; ++k) rows.col(3 + k) = Eigen::Vector3d::Unit(k).cross(point);
   return rows;
 }
-
-}  // namespace
 
 VolumeMoments::VolumeMoments(Eigen::Index parameters)
     : rigid_(Eigen::Matrix<double, 6, 6>::Zero()),
@@ -38,6 +37,13 @@ void VolumeMoments::add(const Eigen::Vector3d& point, const Eigen::Matrix<double
     rigid_by_parameter_.col(j) += rigid.transpose() * column;
     for (const Eigen::Index i : acting) by_parameter_(i, j) += rows.col(i).dot(column);
   }
+}
+
+Eigen::MatrixXd VolumeMoments::rigid_motions() const {
+  const SymmetricEigen eigen = eigen_decomposition(rigid_);
+  const double least = kUndetermined * eigen.values.maxCoeff();
+  const Eigen::VectorXd inverse = (eigen.values.array() > least).select(eigen.values.array().inverse(), 0.0);
+  return eigen.vectors * inverse.asDiagonal() * eigen.vectors.transpose() * rigid_by_parameter_;
 }
 
 Eigen::MatrixXd VolumeMoments::mean() const {

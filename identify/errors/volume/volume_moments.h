@@ -7,6 +7,9 @@
 
 namespace volcal {
 
+/// Displacement of a point per unit of a translation and a rotation: t + w x p.
+Eigen::Matrix<double, 3, 6> rigid_motion_rows(const Eigen::Vector3d& point);
+
 class VolumeMoments {
  public:
   explicit VolumeMoments(Eigen::Index parameters);
@@ -16,6 +19,8 @@ class VolumeMoments {
   /// Mean over the poses of R_i^T R_i, R the displacements less the best rigid motion of each column: least
   /// squares with equal weights; a rotation that the points do not determine is left. Symmetric.
   Eigen::MatrixXd mean() const;
+  /// That rigid motion of every column, 6 x parameters: its displacements are rigid_motion_rows() times it.
+  Eigen::MatrixXd rigid_motions() const;
 
  private:
   double poses_ = 0.0;

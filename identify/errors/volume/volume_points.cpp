@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "volcal/model/kinematics/rotary_datum.h"
@@ -44,6 +45,42 @@ void add_approaches(const std::vector<AxisPosition>& positions, bool inside,
     }
   }
 }
+
+/// Positions of rotary axes, one set after another, spread evenly and without a period in common with a grid
+/// of other axes: multiples of powers of the inverse of the root of x^7 = x + 1, less whole numbers (additive
+/// recurrence). Every axis is approached from either side as often.
+class SpreadRotaryAxes {
+ public:
+  SpreadRotaryAxes(const Machine& machine, std::vector<AxisName> axes)
+      : machine_(machine), axes_(std::move(axes)) {
+    double root = 1.0;
+    for (int k = 0; k < kIterations; ++k) root = std::pow(1.0 + root, 1.0 / kPower);
+    step_ = 1.0 / root;
+  }
+
+  void place(std::size_t number, AxisPosition& position, ApproachDirection& direction) const {
+    double step = 1.0;
+    const auto next = [&] {
+      step *= step_;
+      const double share = 0.5 + static_cast<double>(number) * step;
+      return share - std::floor(share);
+    };
+    for (const AxisName name : axes_) {
+      const Axis& axis = machine_.axis(name);
+      const double span = std::min(axis.travel(), 2.0 * std::numbers::pi);
+      position[index_of(name)] = axis.travel_min + next() * span;
+      direction[index_of(name)] = next() < 0.5 ? -1 : 1;
+    }
+  }
+
+ private:
+  static constexpr double kPower = 7.0;  // one more than dimensions: position and approach of three axes
+  static constexpr int kIterations = 60;
+
+  const Machine& machine_;
+  std::vector<AxisName> axes_;
+  double step_ = 0.0;
+};
 
 }  // namespace
 
@@ -98,6 +135,39 @@ std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axi
   add_approaches(spread_places(machine, axes, cells_per_axis), true, points);
   add_approaches(ends_of_travel(machine, axes), false, points);
   return points;
+}
+
+std::vector<VolumePoint> volume_poses(const Machine& machine, const std::array<bool, kAxisCount>& directed,
+                                      int cells_per_axis) {
+  const std::vector<AxisName> axes = machine.linear_axes();
+  std::vector<VolumePoint> poses;
+  const auto add_approaches_of = [&](const AxisPosition& place, bool inside) {
+    const std::size_t first = poses.size();
+    poses.push_back({place, {}, inside});
+    for (const AxisName axis : axes) {
+      const std::size_t a = index_of(axis);
+      for (std::size_t i = first; i < poses.size(); ++i) poses[i].direction[a] = -1;
+      if (!directed[a]) continue;
+      for (std::size_t i = first, end = poses.size(); i < end; ++i) {
+        poses.push_back(poses[i]);
+        poses.back().direction[a] = 1;
+      }
+    }
+  };
+  for (const AxisPosition& place : spread_places(machine, axes, cells_per_axis))
+    add_approaches_of(place, true);
+  for (const AxisPosition& place : ends_of_travel(machine, axes)) add_approaches_of(place, false);
+  return poses;
+}
+
+std::vector<VolumePoint> turned_volume_poses(const Machine& machine, const std::vector<AxisName>& turned,
+                                             int cells_per_axis) {
+  std::array<bool, kAxisCount> directed;
+  directed.fill(true);
+  std::vector<VolumePoint> poses = volume_poses(machine, directed, cells_per_axis);
+  const SpreadRotaryAxes rotary(machine, turned);
+  for (std::size_t i = 0; i < poses.size(); ++i) rotary.place(i, poses[i].position, poses[i].direction);
+  return poses;
 }
 
 std::vector<VolumePoint> volume_lattice(const Machine& machine, int cells_per_axis) {

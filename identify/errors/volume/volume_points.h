@@ -40,6 +40,14 @@ struct VolumePoint {
 /// spread_places() of X, Y, Z and after them ends_of_travel(), each approached from + and - in all
 /// combinations.
 std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis);
+/// The same of all linear axes, parallel ones too, for errors to which the direction of `directed` axes makes
+/// a difference: others are approached from -.
+std::vector<VolumePoint> volume_poses(const Machine& machine, const std::array<bool, kAxisCount>& directed,
+                                      int cells_per_axis);
+/// The same with rotary axes `turned`: they take a position of their own at each of these places and
+/// directions of approach, spread evenly over their travel; others stand at 0.
+std::vector<VolumePoint> turned_volume_poses(const Machine& machine, const std::vector<AxisName>& turned,
+                                             int cells_per_axis);
 /// The middles of the cells, a lattice: for what is solved by positions of the axes.
 std::vector<VolumePoint> volume_lattice(const Machine& machine, int cells_per_axis);
 

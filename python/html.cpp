@@ -39,12 +39,11 @@ std::string curve(const std::vector<ErrorTableRow>& table, const std::string& sy
       kPlotWidth, kPlotHeight, escaped(symbol), points);
 }
 
-std::string unit_of(const FitResult& result, const std::string& symbol, double& si_per_unit) {
-  const ParameterBlock* block = result.layout.find_block(symbol);
+std::string unit_of(const FitResult& result, const MachineError& error, double& si_per_unit) {
+  const ParameterBlock* block = result.layout.find_block(error);
   si_per_unit = block != nullptr ? block->si_per_unit[0] : kMicro;
   if (block != nullptr) return block->units[0];
-  const auto parsed = ErrorSymbol::parse(symbol);
-  return parsed && is_rotation(parsed->component) ? "urad" : "um";
+  return error.is_angle() ? "urad" : "um";
 }
 
 std::string error_row(const FitResult& result, const std::vector<ErrorTableRow>& table,
@@ -54,9 +53,9 @@ std::string error_row(const FitResult& result, const std::vector<ErrorTableRow>&
   const report::ErrorRange range = report::error_range(result, table, error);
   const auto number = [&](double si) { return fixed_number(si / si_per_unit, 2); };
   return fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
-                     escaped(error.symbol), escaped(unit), error.visible ? number(range.low) : "-",
+                     escaped(error.symbol.name()), escaped(unit), error.visible ? number(range.low) : "-",
                      error.visible ? number(range.high) : "not visible", number(range.expanded),
-                     fixed_number(error.visible_fraction, 2), curve(table, error.symbol));
+                     fixed_number(error.visible_fraction, 2), curve(table, error.symbol.name()));
 }
 
 }  // namespace

@@ -346,11 +346,11 @@ class Realignment {
   void update_rank(FitResult& result) const {
     auto& errors = result.rank.errors;
     const auto is_location = [](const Observability& error) {
-      const auto symbol = LocationSymbol::parse(error.symbol);
+      const auto symbol = error.symbol.location();
       return symbol && !is_rotary(symbol->axis);
     };
     for (Observability& error : errors) {
-      const auto symbol = LocationSymbol::parse(error.symbol);
+      const auto symbol = error.symbol.location();
       if (!symbol || !is_rotary(symbol->axis)) continue;
       if (const ParameterBlock* block = result.layout.find_location(*symbol))
         error.u_rms = std::sqrt(std::max(0.0, result.covariance(block->offset, block->offset)));
@@ -365,7 +365,7 @@ class Realignment {
     if (std::erase_if(errors, is_location) == 0) return;
     for (const LocationSymbol& symbol : squareness_errors(machine_)) {
       const ParameterBlock& block = *result.layout.find_location(symbol);
-      worst.symbol = block.name;
+      worst.symbol = symbol;
       worst.u_rms = std::sqrt(std::max(0.0, result.covariance(block.offset, block.offset)));
       worst.effective_parameters = 1.0;
       errors.push_back(worst);

@@ -95,14 +95,12 @@ PlanJson layout_json(const CampaignPlan& plan) {
 PlanJson errors_json(const ExpectedCampaign& campaign) {
   PlanJson errors = PlanJson::array();
   for (const Observability& error : campaign.result.rank.errors) {
-    PlanJson json = {{"symbol", error.symbol},
+    PlanJson json = {{"symbol", error.symbol.name()},
                      {"visible", error.visible},
                      {"visible_fraction", error.visible_fraction},
                      {"effective_parameters", error.effective_parameters}};
-    const auto symbol = ErrorSymbol::parse(error.symbol);
-    const auto location = LocationSymbol::parse(error.symbol);
-    if (symbol || location) {
-      json["unit"] = edge_unit(symbol ? symbol->component : location->component);
+    if (const auto component = error.symbol.component()) {
+      json["unit"] = edge_unit(*component);
       json["u"] = error.visible ? in_unit(error.u_rms, kMicro) : PlanJson(nullptr);
     }
     if (!error.visible) {

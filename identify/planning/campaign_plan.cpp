@@ -44,7 +44,7 @@ VolumetricUncertainty volume_of(const FitResult& result, const PlanSettings& set
 double target_uncertainty(const ExpectedCampaign& expected, const PlanSettings& settings) {
   if (settings.target != PlanTarget::Symbol) return expected.volumetric.rms;
   for (const Observability& error : expected.result.rank.errors) {
-    if (error.symbol == settings.symbol) return error.u_rms;
+    if (error.symbol.name() == settings.symbol) return error.u_rms;
   }
   return std::nan("");
 }
@@ -67,7 +67,7 @@ void tell(const PlanSettings& settings, const std::string& stage, double done) {
 std::vector<std::string> ExpectedCampaign::invisible() const {
   std::vector<std::string> symbols;
   for (const Observability& error : result.rank.errors) {
-    if (!error.visible) symbols.push_back(error.symbol);
+    if (!error.visible) symbols.push_back(error.symbol.name());
   }
   return symbols;
 }

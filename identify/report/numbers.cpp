@@ -79,11 +79,9 @@ std::string shown_unit(const std::string& edge_unit) {
   return with_raised_powers(shown);
 }
 
-const Observability* find_observability(const FitResult& result, const std::string& symbol) {
-  for (const Observability& error : result.rank.errors) {
-    if (error.symbol == symbol) return &error;
-  }
-  return nullptr;
+const Observability* find_observability(const FitResult& result, const MachineError& error) {
+  const auto found = std::ranges::find(result.rank.errors, error, &Observability::symbol);
+  return found == result.rank.errors.end() ? nullptr : &*found;
 }
 
 }  // namespace volcal::report

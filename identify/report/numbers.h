@@ -23,7 +23,7 @@ std::string axis_letter(AxisName axis);
 /// Unit as printed: "um/m/K" becomes "µm/(m K)", "urad/mm3" becomes "µrad/mm³".
 std::string shown_unit(const std::string& edge_unit);
 
-/// Entry of the rank report; nullptr when the symbol has none.
-const Observability* find_observability(const FitResult& result, const std::string& symbol);
+/// Entry of the rank report; nullptr when the error has none.
+const Observability* find_observability(const FitResult& result, const MachineError& error);
 
 }  // namespace volcal::report

@@ -15,6 +15,7 @@
 #include "volcal/identify/statistics/normal.h"
 #include "volcal/model/description/finding.h"
 #include "volcal/model/description/machine.h"
+#include "volcal/model/description/machine_error.h"
 #include "volcal/model/description/model_spec.h"
 #include "volcal/model/description/recorded_conditions.h"
 #include "volcal/model/description/units.h"
@@ -77,9 +78,9 @@ struct NoiseSummary {
   double dof = 0.0;                 ///< observations minus what the parameters take
 };
 
-/// How well one error (function, squareness) is seen.
+/// How well one error (function, location error, amplitude of an effect) is seen.
 struct Observability {
-  std::string symbol;
+  MachineError symbol;
   bool visible = true;
   double visible_fraction = 0.0;  ///< share of the error's signal that no other parameter can imitate, 0..1
   double u_rms = 0.0;             ///< root mean square standard uncertainty over the measured travel, SI

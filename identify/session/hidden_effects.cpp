@@ -16,21 +16,21 @@ namespace {
 constexpr double kPartner = 0.05;  // of the squares of what the effect moves the readings by
 constexpr std::size_t kMostPartners = 3;
 
-/// Columns of the model that have one name.
-struct NamedColumns {
-  std::string name;
+/// Columns of the model that belong to one error.
+struct ErrorColumns {
+  MachineError error;
   Eigen::Index first;
   Eigen::Index count;
 };
 
-std::vector<NamedColumns> named_columns(const MeasurementModel& model) {
+std::vector<ErrorColumns> error_columns(const MeasurementModel& model) {
   const ParameterLayout& layout = model.layout();
   const DatumSpace datum(layout, model.campaign().machine, Eigen::VectorXd::Zero(layout.size));
-  std::vector<NamedColumns> all;
+  std::vector<ErrorColumns> all;
   for (const auto& function : datum.functions())
-    all.push_back({function.symbol.name(), function.offset, function.size()});
+    all.push_back({function.symbol, function.offset, function.size()});
   for (const auto& block : datum.blocks())
-    all.push_back({layout.blocks[block.block].name, block.offset, block.size});
+    all.push_back({layout.blocks[block.block].machine_error(), block.offset, block.size});
   return all;
 }
 
@@ -48,26 +48,29 @@ class Imitation {
   Imitation(const ModelState& state, Eigen::VectorXd weight, double squares)
       : state_(state), weight_(std::move(weight)), squares_(squares) {}
 
-  /// Names of what moves the readings as the effect does, largest first.
-  std::vector<std::string> partners(const std::vector<NamedColumns>& named, const Eigen::VectorXd& by) const {
-    std::vector<std::pair<double, std::string>> ranked;
-    const auto compare = [&](const std::string& name, const Eigen::VectorXd& moved) {
+  /// What moves the readings as the effect does, largest first.
+  std::vector<MachineError> partners(const std::vector<ErrorColumns>& model,
+                                     const Eigen::VectorXd& by) const {
+    std::vector<std::pair<double, MachineError>> ranked;
+    const auto compare = [&](const MachineError& error, const Eigen::VectorXd& moved) {
       const double share = moved.cwiseProduct(weight_).squaredNorm() / squares_;
-      if (share > kPartner) ranked.emplace_back(share, name);
+      if (share > kPartner) ranked.emplace_back(share, error);
     };
     const auto& jacobian = state_.model().problem().jacobian;
-    for (const NamedColumns& each : named)
-      compare(each.name, jacobian.middleCols(each.first, each.count) * by.segment(each.first, each.count));
+    for (const ErrorColumns& each : model)
+      compare(each.error, jacobian.middleCols(each.first, each.count) * by.segment(each.first, each.count));
     Eigen::Index at = jacobian.cols();
     for (const AddedEffect& added : state_.added()) {
-      compare(state_.family_of(added).label(), added.columns * by.segment(at, added.columns.cols()));
+      compare(MachineError(state_.family_of(added).label()),
+              added.columns * by.segment(at, added.columns.cols()));
       at += added.columns.cols();
     }
-    std::ranges::sort(ranked, std::greater<>());
-    std::vector<std::string> names;
+    std::ranges::sort(ranked, std::greater<>(),
+                      [](const auto& each) { return std::pair(each.first, each.second.name()); });
+    std::vector<MachineError> partners;
     for (std::size_t i = 0; i < std::min(ranked.size(), kMostPartners); ++i)
-      names.push_back(ranked[i].second);
-    return names;
+      partners.push_back(ranked[i].second);
+    return partners;
   }
 
  private:
@@ -88,19 +91,19 @@ std::vector<Explanation> why_hidden(const ModelState& state, const std::vector<c
   }
   const Eigen::MatrixXd by = state.projector().imitation(moved);
   const Eigen::VectorXd weight = weight_of(model);
-  const std::vector<NamedColumns> named = named_columns(model.model());
+  const std::vector<ErrorColumns> columns = error_columns(model.model());
   std::vector<Explanation> why;
   for (Eigen::Index k = 0; k < moved.cols(); ++k) {
     const std::string label = state.setting().families[tests[static_cast<std::size_t>(k)]->family].label();
     const double squares = moved.col(k).cwiseProduct(weight).squaredNorm();
     if (squares == 0.0) {
-      why.push_back(explanation(cause_of_unseen(model.campaign(), label)));
+      why.push_back(explanation(cause_of_unseen(model.campaign(), MachineError(label))));
       continue;
     }
-    std::vector<std::string> partners = Imitation(state, weight, squares).partners(named, by.col(k));
+    const std::vector<MachineError> partners = Imitation(state, weight, squares).partners(columns, by.col(k));
     why.push_back(explanation(partners.empty()
                                   ? Finding{FindingCode::NotVisibleReadingsTooFew, {{"error", label}}}
-                                  : cause_exchangeable(model.model(), label, std::move(partners))));
+                                  : cause_exchangeable(model.model(), MachineError(label), partners)));
   }
   return why;
 }

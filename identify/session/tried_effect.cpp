@@ -47,7 +47,7 @@ std::vector<TriedValue> tried_values(const FitResult& result, const WrittenEffec
 /// Why the readings say nothing of the effect; empty when they do.
 std::string why_not_visible(const FitResult& result, const std::string& label) {
   for (const Observability& error : result.rank.errors) {
-    if (error.symbol == label && !error.visible) return explanation(error.cause).reason;
+    if (error.symbol == MachineError(label) && !error.visible) return explanation(error.cause).reason;
   }
   for (const std::string& sentence : sentences(result.rank.invisible)) {
     if (sentence.find(label) != std::string::npos) return sentence;

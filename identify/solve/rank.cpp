@@ -36,9 +36,9 @@ Eigen::MatrixXd value_rows(const MeasurementModel& model, const DatumSpace::Func
   return rows * function.basis;
 }
 
-/// An error (function or squareness) as a stretch of the reduced vector.
+/// An error as a stretch of the reduced vector.
 struct ErrorStretch {
-  std::string name;
+  MachineError error;
   int offset;
   int size;
   Eigen::MatrixXd rows;  ///< its values, for mean variances
@@ -50,13 +50,13 @@ std::vector<ErrorStretch> error_stretches(const MeasurementModel& model, const D
   for (const auto& function : datum.functions()) {
     if (function.size() == 0) continue;
     stretches.push_back(
-        {function.symbol.name(), function.offset, function.size(), value_rows(model, function), &function});
+        {function.symbol, function.offset, function.size(), value_rows(model, function), &function});
   }
   for (const auto& block : datum.blocks()) {
     const ParameterBlock& source = model.layout().blocks[block.block];
     if (!source.location && (source.kind != ParameterKind::Effect || is_surface(source))) continue;
-    stretches.push_back(
-        {source.name, block.offset, block.size, Eigen::MatrixXd::Identity(block.size, block.size), nullptr});
+    stretches.push_back({source.machine_error(), block.offset, block.size,
+                         Eigen::MatrixXd::Identity(block.size, block.size), nullptr});
   }
   return stretches;
 }
@@ -130,7 +130,7 @@ class RankAnalyser {
     const double variance = mean_variance_in(stretch, posterior_);
     const double variance_alone = mean_variance(stretch, covariance_alone(stretch));
     Observability figure;
-    figure.symbol = stretch.name;
+    figure.symbol = stretch.error;
     figure.visible_fraction = std::sqrt(std::min(1.0, variance_alone / variance));
     figure.u_rms = std::sqrt(variance);
     figure.visible = variance * kGainOfVisible < prior_variance;
@@ -139,7 +139,7 @@ class RankAnalyser {
       if (stretch.function != nullptr) analysis_.invisible_functions.push_back(stretch.function->symbol);
       const bool unseen_alone = variance_alone * kGainOfVisible >= prior_variance;
       if (unseen_alone) figure.visible_fraction = 0.0;
-      figure.cause = cause_of_standing(model_.campaign(), stretch.name)
+      figure.cause = cause_of_standing(model_.campaign(), stretch.error)
                          .value_or(unseen_alone ? cause_alone(stretch) : cause_in_mixture(stretch));
       analysis_.report.invisible.push_back(*figure.cause);
     }
@@ -158,7 +158,7 @@ class RankAnalyser {
 
   Finding cause_alone(const ErrorStretch& stretch) const {
     if (stretch.function == nullptr || !part_is_seen(stretch))
-      return cause_of_unseen(model_.campaign(), stretch.name);
+      return cause_of_unseen(model_.campaign(), stretch.error);
     return cause_of_open_course(model_, stretch.function->symbol, stretch.size);
   }
 
@@ -175,21 +175,28 @@ class RankAnalyser {
   /// The straightness that hides a squareness though all other errors are known: no station, tool or other
   /// instrument tells these two apart, but positions along the axis.
   const ErrorStretch* hiding_straightness(const ErrorStretch& squareness) const {
-    const auto found =
-        std::ranges::find(stretches_, straightness_beside(squareness.name), &ErrorStretch::name);
+    const auto straightness = straightness_beside(squareness.error);
+    if (!straightness) return nullptr;
+    const auto found = std::ranges::find(stretches_, MachineError(*straightness), &ErrorStretch::error);
     if (found == stretches_.end()) return nullptr;
     std::vector<Eigen::Index> open = {squareness.offset};
     const auto add = [&open](int offset, int size) {
       for (int i = 0; i < size; ++i) open.push_back(offset + i);
     };
     for (const auto& block : datum_.blocks()) {
-      const std::string& name = model_.layout().blocks[block.block].name;
-      if (std::ranges::find(stretches_, name, &ErrorStretch::name) == stretches_.end())
-        add(block.offset, block.size);
+      if (!is_stretch(error_of(block))) add(block.offset, block.size);
     }
     if (is_hidden_among(open)) return nullptr;
     add(found->offset, found->size);
     return is_hidden_among(open) ? &*found : nullptr;
+  }
+
+  MachineError error_of(const DatumSpace::BlockCoordinates& block) const {
+    return model_.layout().blocks[block.block].machine_error();
+  }
+
+  bool is_stretch(const MachineError& error) const {
+    return std::ranges::find(stretches_, error, &ErrorStretch::error) != stretches_.end();
   }
 
   /// Is the first of these parameters not visible when all others than these are known?
@@ -201,40 +208,41 @@ class RankAnalyser {
 
   Finding cause_in_mixture(const ErrorStretch& stretch) const {
     if (const ErrorStretch* straightness = hiding_straightness(stretch))
-      return cause_like_straightness(stretch.name, straightness->function->symbol);
-    std::vector<std::string> partners = partners_of(stretch);
-    if (!partners.empty()) return cause_exchangeable(model_, stretch.name, std::move(partners));
+      return cause_like_straightness(stretch.error, straightness->function->symbol);
+    const std::vector<MachineError> partners = partners_of(stretch);
+    if (!partners.empty()) return cause_exchangeable(model_, stretch.error, partners);
     if (stretch.function != nullptr)
       return cause_of_open_course(model_, stretch.function->symbol, stretch.size);
-    return {FindingCode::NotVisibleReadingsTooFew, {{"error", stretch.name}}};
+    return {FindingCode::NotVisibleReadingsTooFew, {{"error", stretch.error.name()}}};
   }
 
-  /// Names of what changes along with an error in the directions that hide, strongest first.
-  std::vector<std::string> partners_of(const ErrorStretch& stretch) const {
+  /// What changes along with an error in the directions that hide, strongest first.
+  std::vector<MachineError> partners_of(const ErrorStretch& stretch) const {
     const Eigen::MatrixXd mine = stretch.rows * hidden_.middleRows(stretch.offset, stretch.size);
-    std::map<std::string, double> share;
-    const auto compare = [&](const std::string& name, const Eigen::MatrixXd& other, double known) {
-      if (name == stretch.name || other.squaredNorm() < kMostlyHidden * known) return;
+    std::map<MachineError, double> share;
+    const auto compare = [&](const MachineError& error, const Eigen::MatrixXd& other, double known) {
+      if (error == stretch.error || other.squaredNorm() < kMostlyHidden * known) return;
       const double together = (mine * other.transpose()).squaredNorm();
-      double& best = share[name];
+      double& best = share[error];
       best = std::max(best, together / (mine.squaredNorm() * other.squaredNorm()));
     };
     for (const ErrorStretch& other : stretches_) {
-      compare(other.name, other.rows * hidden_.middleRows(other.offset, other.size),
+      compare(other.error, other.rows * hidden_.middleRows(other.offset, other.size),
               mean_variance_in(other, posterior_) * static_cast<double>(other.rows.rows()));
     }
     for (const auto& block : datum_.blocks()) {
-      const std::string& name = model_.layout().blocks[block.block].name;
-      if (std::ranges::find(stretches_, name, &ErrorStretch::name) != stretches_.end()) continue;
+      const MachineError error = error_of(block);
+      if (is_stretch(error)) continue;
       for (int i = block.offset; i < block.offset + block.size; ++i)
-        compare(name, hidden_.row(i), posterior_(i, i));
+        compare(error, hidden_.row(i), posterior_(i, i));
     }
-    std::vector<std::pair<double, std::string>> ranked;
-    for (const auto& [name, value] : share) {
-      if (value > kWeakPartner) ranked.emplace_back(value, name);
+    std::vector<std::pair<double, MachineError>> ranked;
+    for (const auto& [error, value] : share) {
+      if (value > kWeakPartner) ranked.emplace_back(value, error);
     }
-    std::ranges::sort(ranked, std::greater<>());
-    std::vector<std::string> partners;
+    std::ranges::sort(ranked, std::greater<>(),
+                      [](const auto& each) { return std::pair(each.first, each.second.name()); });
+    std::vector<MachineError> partners;
     for (std::size_t i = 0; i < ranked.size() && i < kMostPartners; ++i) partners.push_back(ranked[i].second);
     return partners;
   }

@@ -75,8 +75,8 @@ bool are_too_few(const std::vector<double>& positions, int unknowns) {
 }
 
 /// The axis of an error function whose readings stand at one or two positions of it.
-std::optional<AxisName> axis_at_few_positions(const Campaign& campaign, const std::string& name) {
-  const auto symbol = ErrorSymbol::parse(name);
+std::optional<AxisName> axis_at_few_positions(const Campaign& campaign, const MachineError& error) {
+  const auto symbol = error.motion();
   if (!symbol || automatic_intervals(campaign, symbol->axis) > 1) return std::nullopt;
   return symbol->axis;
 }
@@ -87,16 +87,14 @@ constexpr double kTurned = 1e-3;        // rad, from home
 constexpr std::size_t kEnoughSpheres = 3;
 constexpr double kTogether = 0.99;  // of the square of the correlation of two positions
 
-std::optional<AxisName> rotary_axis_of(const std::string& name) {
-  if (const auto symbol = ErrorSymbol::parse(name); symbol && is_rotary(symbol->axis)) return symbol->axis;
-  const auto location = LocationSymbol::parse(name);
-  return location && is_rotary(location->axis) ? std::optional(location->axis) : std::nullopt;
+std::optional<AxisName> rotary_axis_of(const MachineError& error) {
+  const auto axis = error.axis();
+  return axis && is_rotary(*axis) ? axis : std::nullopt;
 }
 
-bool is_of_linear_axis(const std::string& name) {
-  const auto symbol = ErrorSymbol::parse(name);
-  const auto location = LocationSymbol::parse(name);
-  return (symbol && !is_rotary(symbol->axis)) || (location && !is_rotary(location->axis));
+bool is_of_linear_axis(const MachineError& error) {
+  const auto axis = error.axis();
+  return axis && !is_rotary(*axis);
 }
 
 /// Does some reading stand with two rotary axes turned away from home?
@@ -115,16 +113,11 @@ bool turns_two_at_once(const Campaign& campaign, const std::vector<AxisName>& mo
 }
 
 /// The axis with the same direction as that of an error among its partners.
-std::optional<AxisName> axis_beside(const std::string& name, const std::vector<std::string>& partners) {
-  const auto axis_of = [](const std::string& error) -> std::optional<AxisName> {
-    if (const auto symbol = ErrorSymbol::parse(error)) return symbol->axis;
-    if (const auto location = LocationSymbol::parse(error)) return location->axis;
-    return std::nullopt;
-  };
-  const auto own = axis_of(name);
+std::optional<AxisName> axis_beside(const MachineError& error, const std::vector<MachineError>& partners) {
+  const auto own = error.axis();
   if (!own || is_rotary(*own)) return std::nullopt;
-  for (const std::string& partner : partners) {
-    const auto other = axis_of(partner);
+  for (const MachineError& partner : partners) {
+    const auto other = partner.axis();
     if (other && !is_rotary(*other) && *other != *own && main_axis_of(*other) == main_axis_of(*own))
       return other;
   }
@@ -192,22 +185,21 @@ std::vector<std::string> rotary_remedies(const MeasurementModel& model, AxisName
 
 }  // namespace
 
-std::string straightness_beside(const std::string& name) {
-  const auto axis = turned_axis(name);
-  if (!axis) return "";
-  const int across = 3 - direction_of(LocationSymbol::parse(name)->component) - direction_of(*axis);
-  return ErrorSymbol{kAllComponents[static_cast<std::size_t>(across)], *axis}.name();
+std::optional<ErrorSymbol> straightness_beside(const MachineError& error) {
+  const auto axis = turned_axis(error);
+  if (!axis) return std::nullopt;
+  const int across = 3 - direction_of(*error.component()) - direction_of(*axis);
+  return ErrorSymbol{kAllComponents[static_cast<std::size_t>(across)], *axis};
 }
 
-std::optional<Finding> cause_of_standing(const Campaign& campaign, const std::string& name) {
-  const auto symbol = ErrorSymbol::parse(name);
-  const auto moving = symbol ? std::optional(symbol->axis) : turned_axis(name);
+std::optional<Finding> cause_of_standing(const Campaign& campaign, const MachineError& error) {
+  const auto moving = error.motion() ? error.axis() : turned_axis(error);
   if (!moving || axis_moves(campaign, *moving)) return std::nullopt;
-  return Finding{FindingCode::NotVisibleAxisAtRest, {{"error", name}, {"axis", letter(*moving)}}};
+  return Finding{FindingCode::NotVisibleAxisAtRest, {{"error", error.name()}, {"axis", letter(*moving)}}};
 }
 
-Finding cause_of_unseen(const Campaign& campaign, const std::string& name) {
-  const auto symbol = ErrorSymbol::parse(name);
+Finding cause_of_unseen(const Campaign& campaign, const MachineError& error) {
+  const auto symbol = error.motion();
   if (symbol && is_rotation(symbol->component)) {
     const int k = direction_of(symbol->component);
     const bool on_table =
@@ -216,14 +208,14 @@ Finding cause_of_unseen(const Campaign& campaign, const std::string& name) {
         largest_sideways_offset(campaign.machine, tools_moved_by(campaign, symbol->axis), k);
     const bool on_axis = !on_table && sideways < kOnAxis;
     Finding cause{on_axis ? FindingCode::NotVisibleToolsOnOneAxis : FindingCode::NotVisibleNoLeverArm,
-                  {{"error", name}, {"about", std::string(1, "XYZ"[k])}}};
+                  {{"error", error.name()}, {"about", std::string(1, "XYZ"[k])}}};
     if (on_table) cause.data["table"] = letter(symbol->axis);
     return cause;
   }
-  Finding cause{FindingCode::NotVisibleNoReadingChanges, {{"error", name}}};
+  Finding cause{FindingCode::NotVisibleNoReadingChanges, {{"error", error.name()}}};
   if (symbol) {
     cause.data["switch"] = "functions";
-  } else if (LocationSymbol::parse(name)) {
+  } else if (error.location()) {
     cause.data["switch"] = "locations";
   }
   return cause;
@@ -247,25 +239,27 @@ Finding cause_of_open_course(const MeasurementModel& model, ErrorSymbol symbol, 
   return cause;
 }
 
-Finding cause_like_straightness(const std::string& name, ErrorSymbol straightness) {
+Finding cause_like_straightness(const MachineError& squareness, ErrorSymbol straightness) {
   return {FindingCode::NotVisibleLikeStraightness,
-          {{"error", name}, {"axis", letter(straightness.axis)}, {"straightness", straightness.name()}}};
+          {{"error", squareness.name()},
+           {"axis", letter(straightness.axis)},
+           {"straightness", straightness.name()}}};
 }
 
-Finding cause_exchangeable(const MeasurementModel& model, const std::string& name,
-                           std::vector<std::string> partners) {
-  const auto is_nuisance = [&](const std::string& partner) {
+Finding cause_exchangeable(const MeasurementModel& model, const MachineError& error,
+                           const std::vector<MachineError>& partners) {
+  const auto is_nuisance = [&](const MachineError& partner) {
     const ParameterBlock* block = model.layout().find_block(partner);
     return block != nullptr && !block->location && block->kind != ParameterKind::Effect;
   };
-  Finding cause{FindingCode::NotVisibleExchangeable, {{"error", name}}};
+  Finding cause{FindingCode::NotVisibleExchangeable, {{"error", error.name()}}};
   const std::size_t station_count = stations(model.layout()).size();
   std::vector<std::string> remedies;
-  if (const auto axis = axis_at_few_positions(model.campaign(), name)) {
+  if (const auto axis = axis_at_few_positions(model.campaign(), error)) {
     remedies.emplace_back("positions");
     cause.data["axis"] = letter(*axis);
   }
-  if (const auto beside = axis_beside(name, partners)) {
+  if (const auto beside = axis_beside(error, partners)) {
     const AxisName main = main_axis_of(*beside);
     const AxisName parallel =
         is_parallel(*beside) ? *beside : kParallelAxes[static_cast<std::size_t>(direction_of(main))];
@@ -276,21 +270,21 @@ Finding cause_exchangeable(const MeasurementModel& model, const std::string& nam
     }
   }
   if (station_count > 0 && station_count < 3) remedies.emplace_back("stations");
-  if (const auto rotary = rotary_axis_of(name)) {
+  if (const auto rotary = rotary_axis_of(error)) {
     if (station_count == 0 && std::ranges::any_of(partners, is_of_linear_axis))
       remedies.emplace_back("linear-axes");
     for (std::string& remedy : rotary_remedies(model, *rotary, cause)) remedies.push_back(std::move(remedy));
   } else if (tools_in_use(model.campaign()) < 2) {
     remedies.emplace_back("second-tool");
   }
-  if (const auto across = third_tool_across(model.campaign(), name, partners)) {
+  if (const auto across = third_tool_across(model.campaign(), error, partners)) {
     remedies.emplace_back("third-tool");
     cause.data["third_tool_across"] = std::string(1, *across);
   }
   if (station_count == 0 && !cause.has("partly") && std::ranges::any_of(partners, is_nuisance))
     remedies.emplace_back("holding-instrument");
   if (remedies.empty()) remedies.emplace_back("other-lines");
-  cause.data["partners"] = std::move(partners);
+  cause.data["partners"] = names_of(partners);
   cause.data["remedies"] = std::move(remedies);
   return cause;
 }

@@ -55,10 +55,10 @@ std::vector<FunctionSummary> function_summaries(const Campaign& campaign, const 
   return summaries;
 }
 
-double mean_uncertainty(const Campaign& campaign, const FitResult& result, const std::string& name) {
-  const auto symbol = ErrorSymbol::parse(name);
+double mean_uncertainty(const Campaign& campaign, const FitResult& result, const MachineError& error) {
+  const auto symbol = error.motion();
   if (!symbol) {
-    const int offset = result.layout.find_block(name)->offset;
+    const int offset = result.layout.find_block(error)->offset;
     return std::sqrt(result.covariance(offset, offset));
   }
   constexpr int kPlaces = 33;
@@ -80,10 +80,9 @@ double mean_uncertainty(const Campaign& campaign, const FitResult& result, const
 
 void complete_observability(const Campaign& campaign, FitResult& result) {
   for (Observability& figure : result.rank.errors) {
-    if (LocationSymbol::parse(figure.symbol)) figure.effective_parameters = figure.visible ? 1.0 : 0.0;
+    if (figure.symbol.location()) figure.effective_parameters = figure.visible ? 1.0 : 0.0;
     for (const FunctionSummary& function : result.functions) {
-      if (function.symbol.name() == figure.symbol)
-        figure.effective_parameters = function.effective_parameters;
+      if (figure.symbol == function.symbol) figure.effective_parameters = function.effective_parameters;
     }
     if (figure.visible) figure.u_rms = mean_uncertainty(campaign, result, figure.symbol);
   }

@@ -18,7 +18,7 @@ std::vector<FunctionSummary> function_summaries(const Campaign& campaign, const 
 
 /// Root mean square standard uncertainty of a function over its measured travel, or of a scalar parameter, by
 /// the layout and covariance of the result; m or rad.
-double mean_uncertainty(const Campaign& campaign, const FitResult& result, const std::string& name);
+double mean_uncertainty(const Campaign& campaign, const FitResult& result, const MachineError& error);
 
 /// Gives the rank report's errors the uncertainty and resolution of the result, from its layout, covariance
 /// and functions, in place of the rank analysis' wide priors.

@@ -12,9 +12,8 @@ constexpr double kDistinctTips = 10e-3;  // m, tips of tools that readings separ
 constexpr double kLeastMovement = 1e-3;  // of the travel
 
 /// The axis that an error function, or a squareness, belongs to.
-std::optional<AxisName> axis_of_error(const std::string& name) {
-  if (const auto symbol = ErrorSymbol::parse(name)) return symbol->axis;
-  return turned_axis(name);
+std::optional<AxisName> axis_of_error(const MachineError& error) {
+  return error.motion() ? error.axis() : turned_axis(error);
 }
 
 /// Tips of all these tools lie on one line: nothing tells the turns about it from no turn. "X", "Y" or "Z"
@@ -40,24 +39,23 @@ std::optional<char> across_tool_line(const Machine& machine, const std::set<std:
 
 /// The axis where all is rotations of one axis and what goes with them: what a tool off the line of the
 /// others separates.
-std::optional<AxisName> axis_that_turns_tools(const std::string& error,
-                                              const std::vector<std::string>& partners) {
+std::optional<AxisName> axis_that_turns_tools(const MachineError& error,
+                                              const std::vector<MachineError>& partners) {
   std::set<AxisName> axes;
   bool rotation = false;
-  const auto add = [&](const std::string& name) {
-    const auto symbol = ErrorSymbol::parse(name);
-    rotation = rotation || (symbol && is_rotation(symbol->component));
-    if (const auto axis = axis_of_error(name)) axes.insert(*axis);
+  const auto add = [&](const MachineError& each) {
+    rotation = rotation || (each.motion() && each.is_angle());
+    if (const auto axis = axis_of_error(each)) axes.insert(*axis);
   };
   add(error);
-  for (const std::string& partner : partners) add(partner);
+  for (const MachineError& partner : partners) add(partner);
   return rotation && axes.size() == 1 ? std::optional(*axes.begin()) : std::nullopt;
 }
 
 }  // namespace
 
-std::optional<AxisName> turned_axis(const std::string& name) {
-  const auto location = LocationSymbol::parse(name);
+std::optional<AxisName> turned_axis(const MachineError& error) {
+  const auto location = error.location();
   if (!location || is_rotary(location->axis) || !is_rotation(location->component)) return std::nullopt;
   if (direction_of(location->component) == direction_of(location->axis)) return std::nullopt;
   return location->axis;
@@ -82,8 +80,8 @@ std::set<std::size_t> tools_moved_by(const Campaign& campaign, AxisName axis) {
   return tools;
 }
 
-std::optional<char> third_tool_across(const Campaign& campaign, const std::string& error,
-                                      const std::vector<std::string>& partners) {
+std::optional<char> third_tool_across(const Campaign& campaign, const MachineError& error,
+                                      const std::vector<MachineError>& partners) {
   const auto axis = axis_that_turns_tools(error, partners);
   if (!axis) return std::nullopt;
   return across_tool_line(campaign.machine, tools_moved_by(campaign, *axis));

@@ -3,15 +3,15 @@
 
 #include <optional>
 #include <set>
-#include <string>
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/machine_error.h"
 
 namespace volcal {
 
-/// The linear axis whose direction a squareness turns; nothing for other names.
-std::optional<AxisName> turned_axis(const std::string& name);
+/// The linear axis whose direction a squareness turns; nothing for other errors.
+std::optional<AxisName> turned_axis(const MachineError& error);
 
 /// Tools, by their places in the machine file, with which readings stand at more than one position of an
 /// axis: the others tell nothing of its errors.
@@ -21,7 +21,7 @@ std::set<std::size_t> tools_moved_by(const Campaign& campaign, AxisName axis);
 /// moves lie on one line, and
 /// an error and what it can be exchanged with are rotations of one axis and what goes with them. Nothing
 /// moves the tips when the axis turns about that line. Nothing otherwise.
-std::optional<char> third_tool_across(const Campaign& campaign, const std::string& error,
-                                      const std::vector<std::string>& partners);
+std::optional<char> third_tool_across(const Campaign& campaign, const MachineError& error,
+                                      const std::vector<MachineError>& partners);
 
 }  // namespace volcal

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "volcal/model/description/machine.h"
+#include "volcal/model/description/machine_error.h"
 #include "volcal/model/description/symbols.h"
 #include "volcal/model/functions/basis.h"
 
@@ -44,6 +45,8 @@ struct ParameterBlock {
   bool weak_default_prior = false;
 
   int size() const { return static_cast<int>(guess.size()); }
+  /// By the symbol of a location error, else by its name.
+  MachineError machine_error() const { return location ? MachineError(*location) : MachineError(name); }
 };
 
 /// Coefficients of one function (Effect::surface).
@@ -65,6 +68,8 @@ struct ParameterLayout {
   };
   std::optional<FunctionPlace> find(ErrorSymbol symbol) const;
   const ParameterBlock* find_block(const std::string& name) const;
+  /// nullptr for an error motion, which is a function.
+  const ParameterBlock* find_block(const MachineError& error) const { return find_block(error.name()); }
   /// Place of a parameter by its full name: that of its block, and its label behind it where it has one.
   std::optional<int> find_parameter(const std::string& name) const;
   const ParameterBlock* find_location(LocationSymbol symbol) const;

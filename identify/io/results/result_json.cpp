@@ -92,7 +92,7 @@ Json rank_json(const RankReport& rank) {
   Json errors = Json::array();
   for (const Observability& error : rank.errors) {
     const Explanation words = explanation(error.cause);
-    errors.push_back({{"symbol", error.symbol},
+    errors.push_back({{"symbol", error.symbol.name()},
                       {"visible", error.visible},
                       {"visible_fraction", number(error.visible_fraction)},
                       {"u_rms", number(error.u_rms)},
@@ -317,7 +317,7 @@ RankReport rank_from(const Json& json) {
   rank.invisible = findings_beside(json, "invisible", "invisible_findings");
   rank.held_by_prior = findings_beside(json, "held_by_prior", "held_by_prior_findings");
   for (const Json& error : json.at("errors")) {
-    rank.errors.push_back({.symbol = error.at("symbol").get<std::string>(),
+    rank.errors.push_back({.symbol = MachineError::parse(error.at("symbol").get<std::string>()),
                            .visible = error.at("visible").get<bool>(),
                            .visible_fraction = number(error.at("visible_fraction")),
                            .u_rms = number(error.at("u_rms")),

@@ -48,13 +48,12 @@ std::string reference_line(const FitResult& result) {
 void add_function_row(const FitResult& result, const std::vector<ErrorTableRow>& table,
                       const Observability& error, TextTable& text) {
   const report::ErrorRange range = report::error_range(result, table, error);
-  const auto symbol = ErrorSymbol::parse(error.symbol);
-  const bool rotation = symbol && is_rotation(symbol->component);
   const auto value = [](double si) { return fixed_number(si * kPerMicro, 2); };
-  text.add_row({error.symbol, rotation ? "urad" : "um", error.visible ? value(range.low) : "-",
-                error.visible ? value(range.high) : "-", value(result.coverage_factor * error.u_rms),
-                value(range.expanded), fixed_number(error.visible_fraction, 2),
-                fixed_number(error.effective_parameters, 1), error.visible ? "" : "NOT VISIBLE"});
+  text.add_row({error.symbol.name(), error.symbol.is_angle() ? "urad" : "um",
+                error.visible ? value(range.low) : "-", error.visible ? value(range.high) : "-",
+                value(result.coverage_factor * error.u_rms), value(range.expanded),
+                fixed_number(error.visible_fraction, 2), fixed_number(error.effective_parameters, 1),
+                error.visible ? "" : "NOT VISIBLE"});
 }
 
 std::string errors_table(const FitResult& result) {
@@ -80,7 +79,7 @@ std::string errors_table(const FitResult& result) {
     const double si = block->si_per_unit[0];
     const std::string value = error.visible ? fixed_number(result.parameters[block->offset] / si, 2) : "-";
     const std::string expanded = fixed_number(result.coverage_factor * error.u_rms / si, 2);
-    text.add_row({error.symbol, block->units[0], value, value, expanded, expanded,
+    text.add_row({error.symbol.name(), block->units[0], value, value, expanded, expanded,
                   fixed_number(error.visible_fraction, 2), error.visible ? "1.0" : "0.0",
                   error.visible ? "" : "NOT VISIBLE"});
   }
@@ -186,20 +185,19 @@ struct ErrorExtremes {
   double expanded = 0.0;       ///< its largest U95 where it was measured, edge unit
 };
 
-bool is_angle(const FitResult& result, const std::string& symbol) {
-  if (const ParameterBlock* block = result.layout.find_block(symbol)) return block->units[0] == "urad";
-  const auto parsed = ErrorSymbol::parse(symbol);
-  return parsed && is_rotation(parsed->component);
+bool is_angle(const FitResult& result, const MachineError& error) {
+  const ParameterBlock* block = result.layout.find_block(error);
+  return block != nullptr ? block->units[0] == "urad" : error.is_angle();
 }
 
 void extend_extremes(const Observability& error, const report::ErrorRange& range, ErrorExtremes& extremes) {
   if (range.magnitude() * kPerMicro >= extremes.value) {
     extremes.value = range.magnitude() * kPerMicro;
-    extremes.largest = error.symbol;
+    extremes.largest = error.symbol.name();
   }
   if (range.expanded * kPerMicro >= extremes.expanded) {
     extremes.expanded = range.expanded * kPerMicro;
-    extremes.most_uncertain = error.symbol;
+    extremes.most_uncertain = error.symbol.name();
   }
 }
 
@@ -216,7 +214,7 @@ std::string errors_lines(const FitResult& result) {
       extend_extremes(error, report::error_range(result, table, error),
                       extremes[is_angle(result, error.symbol)]);
     } else {
-      invisible.push_back(error.symbol);
+      invisible.push_back(error.symbol.name());
     }
   }
   std::string text = fmt::format("{} of {} errors identified{}\n", errors - invisible.size(), errors,
@@ -241,7 +239,7 @@ std::string effects_lines(const FitResult& result) {
       continue;
     }
     const ParameterBlock& block = *result.layout.find_block(error.symbol);
-    text += fmt::format("  {}: {:.3g} +- {:.2g} {}{}\n", error.symbol,
+    text += fmt::format("  {}: {:.3g} +- {:.2g} {}{}\n", error.symbol.name(),
                         result.parameters[block.offset] / block.si_per_unit[0],
                         result.coverage_factor * error.u_rms / block.si_per_unit[0], block.units[0],
                         error.visible ? "" : ", not visible");

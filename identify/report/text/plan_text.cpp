@@ -168,7 +168,7 @@ std::string figures_table(const CampaignPlan& plan) {
   return table.text();
 }
 
-const Observability* error_of(const ExpectedCampaign& campaign, const std::string& symbol) {
+const Observability* error_of(const ExpectedCampaign& campaign, const MachineError& symbol) {
   for (const Observability& error : campaign.result.rank.errors) {
     if (error.symbol == symbol) return &error;
   }
@@ -188,13 +188,8 @@ std::string planned_errors_table(const CampaignPlan& plan) {
                               "with the plan",
                               kCoverageFactor));
   for (const Observability& error : plan.plan.result.rank.errors) {
-    const auto symbol = ErrorSymbol::parse(error.symbol);
-    const auto location = LocationSymbol::parse(error.symbol);
-    const bool angle = symbol     ? is_rotation(symbol->component)
-                       : location ? is_rotation(location->component)
-                                  : false;
-    if (!symbol && !location) continue;
-    std::vector<std::string> cells = {error.symbol, angle ? "urad" : "um"};
+    if (!error.symbol.has_symbol()) continue;
+    std::vector<std::string> cells = {error.symbol.name(), error.symbol.is_angle() ? "urad" : "um"};
     for (const ExpectedCampaign* each : all) {
       const Observability* own = error_of(*each, error.symbol);
       cells.push_back(own == nullptr  ? "-"

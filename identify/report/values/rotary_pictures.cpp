@@ -18,16 +18,16 @@ constexpr std::size_t kMostMeasured = 400;
 constexpr double kMapStep = 10.0 * kRadianPerDegree;
 constexpr double kShareOfTravel = 0.25;
 
-bool is_determined(const FitResult& result, const std::string& symbol) {
-  const auto error = std::ranges::find(result.rank.errors, symbol, &Observability::symbol);
-  return error == result.rank.errors.end() || error->visible;
+bool is_determined(const FitResult& result, const MachineError& error) {
+  const auto found = std::ranges::find(result.rank.errors, error, &Observability::symbol);
+  return found == result.rank.errors.end() || found->visible;
 }
 
 RotaryMotion motion_of(const FitResult& result, ErrorSymbol symbol,
                        const std::map<int, std::vector<const ErrorTableRow*>>& by_direction) {
   RotaryMotion motion;
   motion.symbol = symbol;
-  motion.visible = is_determined(result, symbol.name());
+  motion.visible = is_determined(result, symbol);
   for (const ErrorTableRow* row : by_direction.begin()->second) {
     motion.position.push_back(row->position);
     motion.extrapolated.push_back(row->extrapolated);
@@ -70,7 +70,7 @@ std::vector<RotaryLine> lines_of(const FitResult& result) {
     drawn.centre = result.machine.axis(line.axis).centre;
     for (const ParameterBlock& block : result.layout.blocks) {
       if (!block.location || block.location->axis != line.axis) continue;
-      if (!is_determined(result, block.location->name())) drawn.not_visible.push_back(*block.location);
+      if (!is_determined(result, *block.location)) drawn.not_visible.push_back(*block.location);
     }
   }
   return lines;

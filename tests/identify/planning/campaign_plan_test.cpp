@@ -82,8 +82,8 @@ TEST(CampaignPlan, PredictsTheUncertaintyThatTheFitStates) {
   for (std::size_t i = 0; i < fitted.rank.errors.size(); ++i) {
     const Observability &ours = expected.rank.errors[i], &theirs = fitted.rank.errors[i];
     EXPECT_EQ(ours.symbol, theirs.symbol);
-    EXPECT_NEAR(ours.u_rms / theirs.u_rms, 1.0, 0.02) << ours.symbol;
-    EXPECT_NEAR(ours.visible_fraction, theirs.visible_fraction, 0.02) << ours.symbol;
+    EXPECT_NEAR(ours.u_rms / theirs.u_rms, 1.0, 0.02) << ours.symbol.name();
+    EXPECT_NEAR(ours.visible_fraction, theirs.visible_fraction, 0.02) << ours.symbol.name();
   }
   EXPECT_NEAR(volumetric_uncertainty(expected, settings.machine.tools, 4).rms /
                   volumetric_uncertainty(fitted, settings.machine.tools, 4).rms,
@@ -216,7 +216,7 @@ TEST(CampaignPlan, KeepsTheTextbookWhereTheSearchLosesAnError) {
   CampaignPlan of_one_error = plan;
   of_one_error.settings.target = PlanTarget::Symbol;
   of_one_error.settings.symbol = "EC0Y";
-  const std::string symbol = lost.symbol;
+  const std::string symbol = lost.symbol.name();
   keep_the_surer(textbook, plan);
   ASSERT_TRUE(plan.replaced);
   EXPECT_LT(plan.replaced->target_ratio, 1.0);
@@ -262,7 +262,7 @@ TEST(CampaignPlan, MinimisesTheErrorThatIsNamed) {
   EXPECT_LT(named.plan.target_u, named.textbook.target_u);
   const auto u_of = [](const CampaignPlan& plan) {
     for (const Observability& error : plan.plan.result.rank.errors) {
-      if (error.symbol == "EXX") return error.u_rms;
+      if (error.symbol.name() == "EXX") return error.u_rms;
     }
     return std::nan("");
   };

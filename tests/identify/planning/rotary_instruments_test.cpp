@@ -278,7 +278,7 @@ Closed closed_loop(const std::string& instrument, const std::string& structure, 
   const FitResult expected = expected_result(campaign_of(layout, settings), settings.model, {}, 2);
   Closed closed;
   for (const Observability& error : expected.rank.errors) {
-    if (!error.visible) closed.invisible.push_back(error.symbol);
+    if (!error.visible) closed.invisible.push_back(error.symbol.name());
   }
   const Eigen::MatrixXd rows = poses.rows(expected);
   closed.predicted = poses.mean_square((rows * expected.covariance).cwiseProduct(rows).sum());

@@ -276,8 +276,8 @@ TEST(RotaryPlan, PredictsTheUncertaintyThatTheFitStates) {
   for (std::size_t i = 0; i < fitted.rank.errors.size(); ++i) {
     const Observability &ours = expected.rank.errors[i], &theirs = fitted.rank.errors[i];
     EXPECT_EQ(ours.symbol, theirs.symbol);
-    EXPECT_EQ(ours.visible, theirs.visible) << ours.symbol;
-    EXPECT_NEAR(ours.u_rms / theirs.u_rms, 1.0, 0.02) << ours.symbol;
+    EXPECT_EQ(ours.visible, theirs.visible) << ours.symbol.name();
+    EXPECT_NEAR(ours.u_rms / theirs.u_rms, 1.0, 0.02) << ours.symbol.name();
   }
 }
 

@@ -40,7 +40,8 @@ ModelSpec fitted_splines(int intervals) {
 }
 
 const Observability& figure_of(const FitResult& result, const std::string& symbol) {
-  const auto found = std::ranges::find(result.rank.errors, symbol, &Observability::symbol);
+  const auto found =
+      std::ranges::find(result.rank.errors, MachineError::parse(symbol), &Observability::symbol);
   if (found == result.rank.errors.end()) throw std::out_of_range(symbol);
   return *found;
 }

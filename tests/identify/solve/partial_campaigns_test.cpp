@@ -177,8 +177,8 @@ std::string table(const FitResult& result, const std::map<std::string, Sight>& s
   std::string text = fmt::format("{:6s} {:>8s} {:>9s} {:>11s}  reason; remedy\n", "error", "report",
                                  "f.d. gain", "null share");
   for (const Observability& error : result.rank.errors) {
-    const Sight& mine = sight.at(error.symbol);
-    text += fmt::format("{:6s} {:>8s} {:9.1f} {:11.4f}  {}; {}\n", error.symbol,
+    const Sight& mine = sight.at(error.symbol.name());
+    text += fmt::format("{:6s} {:>8s} {:9.1f} {:11.4f}  {}; {}\n", error.symbol.name(),
                         error.visible ? "visible" : "-", mine.gain, mine.null_share,
                         explanation(error.cause).reason, explanation(error.cause).remedy);
   }
@@ -238,18 +238,18 @@ TEST_P(PartialCampaign, IsToldApartAsFiniteDifferencesTellIt) {
   ASSERT_EQ(result.rank.errors.size(), 21U);
   std::size_t visible = 0;
   for (const Observability& error : result.rank.errors) {
-    const Sight& mine = sight.at(error.symbol);
+    const Sight& mine = sight.at(error.symbol.name());
     if (mine.gain > kSafeGain) {
-      EXPECT_TRUE(error.visible) << error.symbol;
+      EXPECT_TRUE(error.visible) << error.symbol.name();
     }
     if (mine.gain < kLeastGain) {
-      EXPECT_FALSE(error.visible) << error.symbol;
+      EXPECT_FALSE(error.visible) << error.symbol.name();
     }
     if (mine.null_share < kNothing) {
-      EXPECT_TRUE(error.visible) << error.symbol;
+      EXPECT_TRUE(error.visible) << error.symbol.name();
     }
     if (!error.visible) {
-      EXPECT_GT(mine.null_share, 20 * kNothing) << error.symbol;
+      EXPECT_GT(mine.null_share, 20 * kNothing) << error.symbol.name();
     }
     visible += error.visible ? 1 : 0;
   }
@@ -264,27 +264,27 @@ TEST_P(PartialCampaign, SaysWhyInWordsThatHold) {
   SCOPED_TRACE(table(result, sight));
   for (const Observability& error : result.rank.errors) {
     if (error.visible) {
-      EXPECT_FALSE(error.cause) << error.symbol;
+      EXPECT_FALSE(error.cause) << error.symbol.name();
       continue;
     }
     const Explanation words = explanation(error.cause);
-    EXPECT_NE(words.remedy, "") << error.symbol;
-    const Sight& mine = sight.at(error.symbol);
+    EXPECT_NE(words.remedy, "") << error.symbol.name();
+    const Sight& mine = sight.at(error.symbol.name());
     const bool no_lever = words.reason.find("every tool offset lies on") != std::string::npos;
-    EXPECT_EQ(no_lever, mine.null_share > 0.9999) << error.symbol;
+    EXPECT_EQ(no_lever, mine.null_share > 0.9999) << error.symbol.name();
     if (no_lever) {
       EXPECT_THAT(words.remedy, HasSubstr("tool offset sideways to Z"));
       continue;
     }
-    EXPECT_THAT(words.reason, HasSubstr("can be exchanged with")) << error.symbol;
+    EXPECT_THAT(words.reason, HasSubstr("can be exchanged with")) << error.symbol.name();
     double strongest = 0.0;
     for (const auto& [other, coupling] : mine.coupling) {
       const bool named = other == "nuisance"
                              ? names_nuisance(words.reason)
-                             : other != error.symbol && words.reason.find(other) != std::string::npos;
+                             : other != error.symbol.name() && words.reason.find(other) != std::string::npos;
       if (named) strongest = std::max(strongest, coupling);
     }
-    EXPECT_GT(strongest, 0.05) << error.symbol
+    EXPECT_GT(strongest, 0.05) << error.symbol.name()
                                << ": no partner named here takes part in what no reading sees";
   }
 }
@@ -297,10 +297,10 @@ TEST_P(PartialCampaign, StillGivesWhatIsDetermined) {
   EXPECT_TRUE(result.covariance.allFinite());
   for (const Observability& error : result.rank.errors) {
     if (!error.visible) {
-      EXPECT_GT(error.u_rms, 20e-6) << error.symbol;
+      EXPECT_GT(error.u_rms, 20e-6) << error.symbol.name();
     }
-    if (sight.at(error.symbol).null_share < kNothing) {
-      EXPECT_LT(error.u_rms, 0.3 * kWideError) << error.symbol;
+    if (sight.at(error.symbol.name()).null_share < kNothing) {
+      EXPECT_LT(error.u_rms, 0.3 * kWideError) << error.symbol.name();
     }
   }
 }
@@ -361,7 +361,7 @@ TEST(PartialCampaign, ASquarenessAtTwoPositionsAsksForPositions) {
     study.measurements.clear();
     study.measurements.emplace_back().settings = tracking;
     const FitResult result = fit_polynomials(sim::simulate(study).campaign);
-    return *std::ranges::find(result.rank.errors, "EC0Y", &Observability::symbol);
+    return *std::ranges::find(result.rank.errors, MachineError::parse("EC0Y"), &Observability::symbol);
   };
   const Observability at_two = squareness(2);
   EXPECT_FALSE(at_two.visible);
@@ -388,7 +388,7 @@ TEST(PartialCampaign, AStraightnessAtTwoPositionsAsksForPositions) {
     study.measurements.clear();
     study.measurements.emplace_back().settings = tracking;
     const FitResult result = fit_polynomials(sim::simulate(study).campaign);
-    return *std::ranges::find(result.rank.errors, "EXY", &Observability::symbol);
+    return *std::ranges::find(result.rank.errors, MachineError::parse("EXY"), &Observability::symbol);
   };
   const Observability at_two = straightness(2);
   EXPECT_FALSE(at_two.visible);
@@ -406,7 +406,8 @@ TEST(PartialCampaign, AnAxisThatStandsStillHidesItsErrorsAndItsSquareness) {
   study.measurements.emplace_back().settings = lines;
   const FitResult result = fit_polynomials(sim::simulate(study).campaign);
   for (const char* name : {"EXY", "EC0Y"}) {
-    const auto error = std::ranges::find(result.rank.errors, name, &Observability::symbol);
+    const auto error =
+        std::ranges::find(result.rank.errors, MachineError::parse(name), &Observability::symbol);
     EXPECT_FALSE(error->visible) << name;
     EXPECT_EQ(explanation(error->cause).reason, "axis Y does not move in this campaign") << name;
     EXPECT_EQ(explanation(error->cause).remedy, "measure along axis Y") << name;

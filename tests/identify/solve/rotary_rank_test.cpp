@@ -43,7 +43,8 @@ ModelSpec rotary_model_of(int harmonics) {
 }
 
 std::optional<Finding> cause_of(const FitResult& result, const std::string& error) {
-  const auto found = std::ranges::find(result.rank.errors, error, &Observability::symbol);
+  const auto found =
+      std::ranges::find(result.rank.errors, MachineError::parse(error), &Observability::symbol);
   return found == result.rank.errors.end() ? std::nullopt : found->cause;
 }
 
@@ -101,10 +102,14 @@ TEST(RotaryRank, AsksForTheLinearAxesWhereTheyFollowUnmeasured) {
   const sim::TruthMachine truth = five_axis_truth(five_axis_machine("w C' A' b X Y Z t"), {}, 5);
   const Campaign campaign = r_test_campaign(truth, GridPlan{}, 17);
   const MeasurementModel model(campaign, resolve_knots(rotary_model_of(2), campaign));
-  const Finding beside = cause_exchangeable(model, "EX0C", {"EZX", "EB0Z", "EB0A"});
+  const Finding beside = cause_exchangeable(
+      model, MachineError::parse("EX0C"),
+      {MachineError::parse("EZX"), MachineError::parse("EB0Z"), MachineError::parse("EB0A")});
   EXPECT_THAT(beside.texts("remedies"), Contains("linear-axes"));
   EXPECT_THAT(sentence(beside), HasSubstr("measure the linear axes, too, with the rotary axes at 0"));
-  EXPECT_THAT(cause_exchangeable(model, "EX0C", {"EB0A"}).texts("remedies"), Not(Contains("linear-axes")));
+  EXPECT_THAT(
+      cause_exchangeable(model, MachineError::parse("EX0C"), {MachineError::parse("EB0A")}).texts("remedies"),
+      Not(Contains("linear-axes")));
 }
 
 /// A model file of other errors alone, one that names motions of C, and one that leaves nothing out.
@@ -134,7 +139,8 @@ TEST(RotaryRank, AsksForTheTravelThatWasNotMeasured) {
   Campaign campaign = r_test_campaign(truth, GridPlan{}, 17);
   const auto remedies = [&] {
     const MeasurementModel model(campaign, resolve_knots(rotary_model_of(2), campaign));
-    return cause_exchangeable(model, "EBA", {"EB0A"}).texts("remedies");
+    return cause_exchangeable(model, MachineError::parse("EBA"), {MachineError::parse("EB0A")})
+        .texts("remedies");
   };
   Axis& cradle = *std::ranges::find(campaign.machine.axes, AxisName::A, &Axis::name);
   const MeasuredRange measured = measured_range(campaign, AxisName::A);

@@ -28,22 +28,29 @@ Campaign campaign_with_tools(const std::vector<Eigen::Vector3d>& offsets_mm) {
   return campaign;
 }
 
-const std::vector<std::string> kPartners = {"EAZ", "ECZ", "EA0Z", "station P1"};
+std::vector<MachineError> errors(const std::vector<std::string>& names) {
+  std::vector<MachineError> all;
+  for (const std::string& name : names) all.push_back(MachineError::parse(name));
+  return all;
+}
+
+const MachineError kStraightness{ErrorSymbol{Component::Y, AxisName::Z}};
+const std::vector<MachineError> kPartners = errors({"EAZ", "ECZ", "EA0Z", "station P1"});
 
 TEST(ThirdTool, IsProposedAcrossTheLineOfTwo) {
   const Campaign campaign = campaign_with_tools({{0, 0, -150}, {100, 0, -200}});
-  EXPECT_EQ(third_tool_across(campaign, "EYZ", kPartners), 'Y');
+  EXPECT_EQ(third_tool_across(campaign, kStraightness, kPartners), 'Y');
 }
 
 TEST(ThirdTool, IsProposedWhereThreeTipsLieOnOneLine) {
   const Campaign campaign = campaign_with_tools({{0, 0, -100}, {0, 50, -150}, {0, 100, -200}});
-  EXPECT_EQ(third_tool_across(campaign, "EYZ", kPartners), 'X');
+  EXPECT_EQ(third_tool_across(campaign, kStraightness, kPartners), 'X');
 }
 
 TEST(ThirdTool, HelpsNeitherWithThreeTipsInAPlaneNorWithOneTool) {
   const Campaign in_a_plane = campaign_with_tools({{0, 0, -150}, {100, 0, -200}, {0, 100, -200}});
-  EXPECT_EQ(third_tool_across(in_a_plane, "EYZ", kPartners), std::nullopt);
-  EXPECT_EQ(third_tool_across(campaign_with_tools({{0, 0, -150}, {0, 0, -150}}), "EYZ", kPartners),
+  EXPECT_EQ(third_tool_across(in_a_plane, kStraightness, kPartners), std::nullopt);
+  EXPECT_EQ(third_tool_across(campaign_with_tools({{0, 0, -150}, {0, 0, -150}}), kStraightness, kPartners),
             std::nullopt);
 }
 
@@ -53,7 +60,7 @@ TEST(ThirdTool, IsNotOneWithWhichTheAxisStandsStill) {
   campaign.setups[2].readings.position[index_of(AxisName::Z)] = {0.05, 0.05};
   EXPECT_EQ(tools_moved_by(campaign, AxisName::Z), (std::set<std::size_t>{0, 1}));
   EXPECT_TRUE(tools_moved_by(campaign, AxisName::X).empty());
-  EXPECT_EQ(third_tool_across(campaign, "EYZ", kPartners), 'Y');
+  EXPECT_EQ(third_tool_across(campaign, kStraightness, kPartners), 'Y');
 }
 
 /// A tool that stands at another position on each of two setups is moved.
@@ -68,9 +75,9 @@ TEST(ToolsMovedBy, CountsPositionsOfAllSetups) {
 /// Errors of several axes, or no rotation: other readings are missing.
 TEST(ThirdTool, IsForTheRotationsOfOneAxis) {
   const Campaign campaign = campaign_with_tools({{0, 0, -150}, {100, 0, -200}});
-  EXPECT_EQ(third_tool_across(campaign, "EYZ", {"EAZ", "ECY"}), std::nullopt);
-  EXPECT_EQ(third_tool_across(campaign, "EYZ", {"EA0Z"}), std::nullopt);
-  EXPECT_EQ(third_tool_across(campaign, "station P1", kPartners), 'Y');
+  EXPECT_EQ(third_tool_across(campaign, kStraightness, errors({"EAZ", "ECY"})), std::nullopt);
+  EXPECT_EQ(third_tool_across(campaign, kStraightness, errors({"EA0Z"})), std::nullopt);
+  EXPECT_EQ(third_tool_across(campaign, MachineError{"station P1"}, kPartners), 'Y');
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ double squareness_of(const FitResult& result) {
 }
 
 const Observability& figure_with_prior(const FitResult& result, const std::string& symbol) {
-  return *std::ranges::find(result.rank.errors, symbol, &Observability::symbol);
+  return *std::ranges::find(result.rank.errors, MachineError::parse(symbol), &Observability::symbol);
 }
 
 // With AB = BC the printer firmware Marlin computes tan(skew) from the diagonals and a side:

@@ -120,7 +120,7 @@ void add_functions(FitResult& result) {
       if (!visible)
         cause = Finding{FindingCode::NotVisibleToolsOnOneAxis, {{"error", "ECZ"}, {"about", "Z"}}};
       result.rank.errors.push_back(
-          {symbol.name(), visible, visible ? 0.8 : 0.0, visible ? 0.3e-6 : 0.0, 7.3, cause});
+          {symbol, visible, visible ? 0.8 : 0.0, visible ? 0.3e-6 : 0.0, 7.3, cause});
     }
     group.offset = result.layout.function_size;
     result.layout.function_size += group.size();
@@ -152,7 +152,7 @@ void add_blocks(FitResult& result) {
   for (const LocationSymbol symbol : result.machine.datum.squareness()) {
     add_block(result, ParameterKind::Location, symbol.name(), "urad", kMicro, {""},
               Eigen::VectorXd::Constant(1, 0.0));
-    result.rank.errors.push_back({symbol.name(), true, 0.95, 0.2e-6, 1.0});
+    result.rank.errors.push_back({symbol, true, 0.95, 0.2e-6, 1.0});
   }
   const std::vector<std::string> xyz = {"x", "y", "z"};
   add_block(result, ParameterKind::Nuisance, "station P1", "mm", 1e-3, xyz,

@@ -78,14 +78,10 @@ Json identified_rows(const FitResult& result) {
   const auto table = error_table(result);
   Json rows = Json::array();
   for (const Observability& error : result.rank.errors) {
-    if (is_amplitude(result, error)) continue;
-    const auto symbol = ErrorSymbol::parse(error.symbol);
-    const auto location = LocationSymbol::parse(error.symbol);
-    if (!symbol && !location) continue;
+    if (is_amplitude(result, error) || !error.symbol.has_symbol()) continue;
     const ErrorRange range = error_range(result, table, error);
-    const bool rotation = symbol ? is_rotation(symbol->component) : is_rotation(location->component);
-    rows.push_back({{"symbol", error.symbol},
-                    {"unit", rotation ? "µrad" : "µm"},
+    rows.push_back({{"symbol", error.symbol.name()},
+                    {"unit", error.symbol.is_angle() ? "µrad" : "µm"},
                     {"visible", error.visible},
                     {"low", rounded(range.low * kPerMicro, 5)},
                     {"high", rounded(range.high * kPerMicro, 5)},

@@ -64,7 +64,7 @@ Json function_json(const FitResult& result, ErrorSymbol symbol, const FunctionRo
   json["component"] = static_cast<int>(index_of(symbol.component));
   json["unit"] = is_rotation(symbol.component) ? "µrad" : "µm";
   json["meaning"] = meaning(symbol);
-  const Observability* error = find_observability(result, symbol.name());
+  const Observability* error = find_observability(result, symbol);
   if (rows == nullptr) {
     json["state"] = "off";
     return json;

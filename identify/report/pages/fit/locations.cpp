@@ -39,7 +39,7 @@ Json identified(const FitResult& result, const ParameterBlock& block) {
   const LocationSymbol symbol = *block.location;
   const double value = result.parameters[block.offset];
   const double u = std::sqrt(std::max(0.0, result.covariance(block.offset, block.offset)));
-  const Observability* error = find_observability(result, symbol.name());
+  const Observability* error = find_observability(result, symbol);
   const bool visible = error == nullptr || error->visible;
   Json row = {{"symbol", symbol.name()},
               {"axis", axis_letter(symbol.axis)},

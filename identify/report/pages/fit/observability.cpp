@@ -8,19 +8,13 @@
 namespace volcal::report {
 namespace {
 
-bool turns(const std::string& symbol) {
-  if (const auto error = ErrorSymbol::parse(symbol)) return is_rotation(error->component);
-  if (const auto location = LocationSymbol::parse(symbol)) return is_rotation(location->component);
-  return false;
-}
-
 Json error_rows(const FitResult& result) {
   Json rows = Json::array();
   for (const Observability& error : result.rank.errors) {
     const Explanation words = explanation(error.cause);
-    rows.push_back({{"symbol", error.symbol},
-                    {"axis", std::string(1, error.symbol.back())},
-                    {"unit", turns(error.symbol) ? "µrad" : "µm"},
+    rows.push_back({{"symbol", error.symbol.name()},
+                    {"axis", std::string(1, error.symbol.name().back())},
+                    {"unit", error.symbol.is_angle() ? "µrad" : "µm"},
                     {"visible", error.visible},
                     {"visible_fraction", rounded(error.visible_fraction, 4)},
                     {"u_rms", rounded(error.u_rms * kPerMicro, 3)},

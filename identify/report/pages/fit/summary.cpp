@@ -63,7 +63,7 @@ Json invisible_errors(const FitResult& result) {
   for (const Observability& error : result.rank.errors) {
     if (error.visible) continue;
     const Explanation words = explanation(error.cause);
-    list.push_back({{"symbol", error.symbol}, {"reason", words.reason}, {"remedy", words.remedy}});
+    list.push_back({{"symbol", error.symbol.name()}, {"reason", words.reason}, {"remedy", words.remedy}});
   }
   return list;
 }

@@ -12,23 +12,20 @@ Json plan_errors_page(const PlanPageInput& input) {
   Json names = Json::array(), rows = Json::array();
   for (const ExpectedCampaign* each : campaigns) names.push_back(each->name);
   for (const Observability& error : plan.plan.result.rank.errors) {
-    const auto symbol = ErrorSymbol::parse(error.symbol);
-    const auto location = LocationSymbol::parse(error.symbol);
-    if (!symbol && !location) continue;
+    if (!error.symbol.has_symbol()) continue;
     Json expanded = Json::array();
     for (const ExpectedCampaign* each : campaigns) {
       const Observability* own = find_observability(each->result, error.symbol);
       const bool visible = own != nullptr && own->visible;
       expanded.push_back(visible ? rounded(kCoverageFactor * own->u_rms * kPerMicro, 3) : Json(nullptr));
     }
-    rows.push_back(
-        {{"symbol", error.symbol},
-         {"axis", std::string(1, error.symbol.back())},
-         {"unit", shown_unit(std::string(edge_unit(symbol ? symbol->component : location->component)))},
-         {"U", std::move(expanded)},
-         {"visible_fraction", rounded(error.visible_fraction, 4)},
-         {"effective_parameters", rounded(error.effective_parameters, 3)},
-         {"visible", error.visible}});
+    rows.push_back({{"symbol", error.symbol.name()},
+                    {"axis", axis_letter(*error.symbol.axis())},
+                    {"unit", shown_unit(std::string(edge_unit(*error.symbol.component())))},
+                    {"U", std::move(expanded)},
+                    {"visible_fraction", rounded(error.visible_fraction, 4)},
+                    {"effective_parameters", rounded(error.effective_parameters, 3)},
+                    {"visible", error.visible}});
   }
   return {{"campaigns", std::move(names)}, {"errors", std::move(rows)}};
 }

@@ -16,10 +16,10 @@ namespace {
 constexpr double kPlotWidth = 160.0, kPlotHeight = 28.0;  // px
 
 /// An error over its travel, mean of both directions.
-std::string curve(const std::vector<ErrorTableRow>& table, const std::string& symbol) {
+std::string curve(const std::vector<ErrorTableRow>& table, const MachineError& error) {
   std::vector<const ErrorTableRow*> rows;
   for (const ErrorTableRow& row : table) {
-    if (row.symbol == symbol && row.axis && row.direction == 0) rows.push_back(&row);
+    if (row.symbol == error && row.axis && row.direction == 0) rows.push_back(&row);
   }
   if (rows.size() < 2) return {};
   const auto by_value = [](const ErrorTableRow* row) { return row->value; };
@@ -36,7 +36,7 @@ std::string curve(const std::vector<ErrorTableRow>& table, const std::string& sy
       "<svg width=\"{0:g}\" height=\"{1:g}\" role=\"img\" aria-label=\"{2} over its travel\"><polyline "
       "points=\"{3}\" "
       "fill=\"none\" stroke=\"#1f5f99\" stroke-width=\"1.5\"/></svg>",
-      kPlotWidth, kPlotHeight, escaped(symbol), points);
+      kPlotWidth, kPlotHeight, escaped(error.name()), points);
 }
 
 std::string unit_of(const FitResult& result, const MachineError& error, double& si_per_unit) {
@@ -55,7 +55,7 @@ std::string error_row(const FitResult& result, const std::vector<ErrorTableRow>&
   return fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
                      escaped(error.symbol.name()), escaped(unit), error.visible ? number(range.low) : "-",
                      error.visible ? number(range.high) : "not visible", number(range.expanded),
-                     fixed_number(error.visible_fraction, 2), curve(table, error.symbol.name()));
+                     fixed_number(error.visible_fraction, 2), curve(table, error.symbol));
 }
 
 }  // namespace

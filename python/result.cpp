@@ -115,7 +115,7 @@ py::dict error_table_of(const Result& result, int positions, const std::string& 
   options.zero_plus = zero == "plus";
   const auto rows = without_lock([&] { return error_table(result.result, options); });
   py::dict table;
-  table["symbol"] = column(rows, [](const auto& row) { return row.symbol; });
+  table["symbol"] = column(rows, [](const auto& row) { return row.symbol.name(); });
   table["axis"] =
       column(rows, [](const auto& row) { return row.axis ? std::string(1, letter_of(*row.axis)) : ""; });
   table["position"] = column(rows, [](const auto& row) { return row.axis ? row.position : std::nan(""); });

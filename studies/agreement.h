@@ -7,8 +7,9 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
+
+#include "volcal/model/description/machine_error.h"
 
 namespace volcal::studies {
 
@@ -24,7 +25,7 @@ struct AgreementOptions {
 
 /// Of one table value, SI.
 struct AgreedValue {
-  std::string symbol;
+  MachineError symbol;
   double u_linear = 0.0;      ///< as the fits state it, root mean square over the campaigns
   double u_montecarlo = 0.0;  ///< of the first campaign's draws, times u_linear over that campaign's own
   double u_scatter = 0.0;     ///< standard deviation of the fitted values over the campaigns

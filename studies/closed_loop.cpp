@@ -71,9 +71,9 @@ double fixed_rms(const sim::SimulatedCampaign& simulated, const std::array<int, 
 
 double truth_of(const sim::TruthInDatum& truth, const std::array<LocationSymbol, 3>& squareness,
                 const ErrorTableRow& row) {
-  if (const auto symbol = ErrorSymbol::parse(row.symbol)) return truth.value(*symbol, row.position);
+  if (const auto symbol = row.symbol.motion()) return truth.value(*symbol, row.position);
   for (std::size_t i = 0; i < squareness.size(); ++i) {
-    if (squareness[i].name() == row.symbol) return truth.squareness()[i];
+    if (row.symbol == squareness[i]) return truth.squareness()[i];
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
@@ -85,7 +85,7 @@ std::map<std::string, double> table_coverage(const sim::SimulatedCampaign& simul
   std::map<std::string, std::pair<int, int>> counts;
   for (const ErrorTableRow& row : error_table(result)) {
     if (row.u == 0.0 || row.extrapolated) continue;
-    auto& [inside, all] = counts[row.symbol];
+    auto& [inside, all] = counts[row.symbol.name()];
     inside += std::abs(row.value - truth_of(truth, squareness, row)) <= row.U95 ? 1 : 0;
     ++all;
   }

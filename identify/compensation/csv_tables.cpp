@@ -87,12 +87,10 @@ void read_motion_place(const CsvRow& row, ErrorSymbol symbol, ErrorTableRow& res
 
 ErrorTableRow function_row(const CsvRow& row, TableContent content) {
   ErrorTableRow result;
-  result.symbol = row.cells[0];
-  const auto motion = ErrorSymbol::parse(result.symbol);
-  const auto location = LocationSymbol::parse(result.symbol);
-  if (motion) {
+  result.symbol = MachineError::parse(row.cells[0]);
+  if (const auto motion = result.symbol.motion()) {
     read_motion_place(row, *motion, result);
-  } else if (location) {
+  } else if (const auto location = result.symbol.location()) {
     if (!row.cells[1].empty() || !row.cells[2].empty())
       fail_cell(row, "axis", row.cells[1],
                 "a location error has neither axis nor position; empty both cells");
@@ -117,7 +115,7 @@ std::string function_table_csv(const std::vector<ErrorTableRow>& rows, TableCont
   auto out = std::back_inserter(text);
   fmt::format_to(out, "{}\n", function_header(content));
   for (const ErrorTableRow& row : rows) {
-    fmt::format_to(out, "{},", row.symbol);
+    fmt::format_to(out, "{},", row.symbol.name());
     if (row.axis) {
       fmt::format_to(out, "{},{:.10g},{},", letter_of(*row.axis),
                      row.position / position_unit(*row.axis).si_per_unit, position_unit(*row.axis).suffix);
@@ -133,7 +131,7 @@ std::string function_table_csv(const std::vector<ErrorTableRow>& rows, TableCont
 
 std::vector<ErrorTableRow> read_function_table(const TableFile& file, TableContent content) {
   std::vector<ErrorTableRow> rows;
-  std::map<std::pair<std::string, int>, std::vector<double>> positions;  // by symbol and direction
+  std::map<std::pair<MachineError, int>, std::vector<double>> positions;  // by symbol and direction
   for (const CsvRow& row : csv_rows(file, function_header(content))) {
     rows.push_back(function_row(row, content));
     auto& before = positions[{rows.back().symbol, rows.back().direction}];

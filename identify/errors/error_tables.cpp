@@ -270,7 +270,7 @@ void for_each_table_row(const FitResult& result, const ErrorTableOptions& option
            rows.has_directions(symbol) ? std::vector<int>{1, -1} : std::vector<int>{0}) {
         for (const double q : table_positions(result, axis, options)) {
           ErrorTableRow place;
-          place.symbol = symbol.name();
+          place.symbol = symbol;
           place.axis = axis.name;
           place.position = q;
           place.direction = direction;
@@ -291,7 +291,7 @@ void for_each_table_row(const FitResult& result, const ErrorTableOptions& option
   for (const ParameterBlock& block : result.layout.blocks) {
     if (!block.location) continue;
     ErrorTableRow place;
-    place.symbol = block.name;
+    place.symbol = *block.location;
     place.rotation = is_rotation(block.location->component);
     place.value = result.parameters[block.offset];
     visit(place, Eigen::VectorXd(Eigen::VectorXd::Unit(result.layout.size, block.offset)), 0.0);

@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "volcal/identify/errors/error_field.h"
+#include "volcal/model/description/machine_error.h"
 
 namespace volcal {
 
 /// One row of error_tables.csv, SI inside.
 struct ErrorTableRow {
-  std::string symbol;
+  MachineError symbol;           ///< an error motion or a location error
   std::optional<AxisName> axis;  ///< empty for squareness
   double position = 0.0;         ///< m or rad
   int direction = 0;             ///< 0 mean of both; +1, -1 with reversal

@@ -52,7 +52,7 @@ void add_tables(const FitResult& result, const Conditions& conditions, QuantityL
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (table[i].u <= kExact * largest[table[i].rotation]) continue;
     list.add({.kind = QuantityKind::TableValue,
-              .name = table[i].symbol,
+              .name = table[i].symbol.name(),
               .axis = table[i].axis,
               .position = table[i].position,
               .direction = table[i].direction,

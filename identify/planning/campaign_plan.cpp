@@ -17,9 +17,9 @@ namespace {
 constexpr int kReportedVolume = 5;  // points per axis
 
 std::string place_of(const ErrorTableRow& row) {
-  if (!row.axis) return row.symbol;
+  if (!row.axis) return row.symbol.name();
   const Unit unit = position_unit(*row.axis);
-  return fmt::format("{} at {:.0f} {}", row.symbol, row.position / unit.si_per_unit, unit.suffix);
+  return fmt::format("{} at {:.0f} {}", row.symbol.name(), row.position / unit.si_per_unit, unit.suffix);
 }
 
 void find_worst_values(ExpectedCampaign& expected) {

@@ -94,7 +94,7 @@ FitResult identified_axis() {
 std::vector<ErrorTableRow> rows_of(const std::vector<ErrorTableRow>& table, int direction) {
   std::vector<ErrorTableRow> rows;
   for (const ErrorTableRow& row : table) {
-    if (row.symbol == "EXX" && row.direction == direction) rows.push_back(row);
+    if (row.symbol.name() == "EXX" && row.direction == direction) rows.push_back(row);
   }
   return rows;
 }

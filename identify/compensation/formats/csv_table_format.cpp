@@ -18,10 +18,8 @@ class FunctionTables {
  public:
   FunctionTables(const std::vector<ErrorTableRow>& rows, const TableFile& file) {
     for (const ErrorTableRow& row : rows) {
-      const auto motion = ErrorSymbol::parse(row.symbol);
-      const auto location = LocationSymbol::parse(row.symbol);
-      if (motion) add(*motion, row);
-      if (location) locations_[*location] = row.value;
+      if (const auto motion = row.symbol.motion()) add(*motion, row);
+      if (const auto location = row.symbol.location()) locations_[*location] = row.value;
     }
     for (auto& [symbol, table] : tables_) complete(symbol, table, file);
   }
@@ -112,10 +110,8 @@ CorrectionTerm rotary_term(const TableMetadata& metadata, const Eigen::Vector3d&
 /// Of the axis whose displacement the error at home is.
 bool hold_errors_of_table(const std::vector<ErrorTableRow>& rows, const Structure& structure) {
   const auto table = outermost_table_axis(structure);
-  return table && std::ranges::any_of(rows, [&](const ErrorTableRow& row) {
-           const auto location = LocationSymbol::parse(row.symbol);
-           return location ? location->axis == *table : row.axis == table;
-         });
+  return table &&
+         std::ranges::any_of(rows, [&](const ErrorTableRow& row) { return row.symbol.axis() == table; });
 }
 
 /// From compensation_tables.csv and metadata.csv, for the tool that the latter names; zero at home approached
@@ -125,10 +121,10 @@ CompensationTables read_csv(std::span<const TableFile> files) {
   const TableFile& file = file_named(files, "compensation_tables.csv");
   const auto rows = read_function_table(file, TableContent::Compensations);
   for (const ErrorTableRow& row : rows) {
-    const auto location = LocationSymbol::parse(row.symbol);
+    const auto location = row.symbol.location();
     const auto axis = location && is_rotary(location->axis) ? std::optional(location->axis) : row.axis;
     if (axis && !metadata.machine.has_axis(*axis))
-      throw InputError({file.name, 0}, row.symbol + " belongs to an axis that the machine lacks",
+      throw InputError({file.name, 0}, row.symbol.name() + " belongs to an axis that the machine lacks",
                        "take metadata.csv of the same run");
   }
   const auto tables = std::make_shared<const FunctionTables>(rows, file);

@@ -55,7 +55,7 @@ JointTable table_with_covariance(const FitResult& result, const ErrorTableOption
   table.positions.resize(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const ErrorTableRow& row = rows[static_cast<std::size_t>(i)];
-    table.rows.names.push_back(row.symbol);
+    table.rows.names.push_back(row.symbol.name());
     table.rows.units.emplace_back(row.rotation ? "urad" : "um");
     table.rows.values[i] = row.value / kMicro;
     const Unit unit = row.axis ? position_unit(*row.axis) : Unit{};

@@ -124,8 +124,8 @@ FitResult result_of_tables(const std::filesystem::path& folder) {
   MeasuredRows measured;
   for (const ErrorTableRow& row :
        read_function_table(table_file(folder, kErrorTables), TableContent::Errors)) {
-    if (const auto location = LocationSymbol::parse(row.symbol)) model.locations[*location] = row.value;
-    const auto symbol = ErrorSymbol::parse(row.symbol);
+    if (const auto location = row.symbol.location()) model.locations[*location] = row.value;
+    const auto symbol = row.symbol.motion();
     if (!symbol) continue;
     measured.add(symbol->axis, row);
     if (row.direction >= 0) functions[*symbol].forward[row.position] = row.value;

@@ -10,7 +10,7 @@ ErrorRange error_range(const FitResult& result, const std::vector<ErrorTableRow>
   }
   ErrorRange range;
   for (const ErrorTableRow& row : table) {
-    if (row.symbol != error.symbol.name() || row.extrapolated) continue;
+    if (row.symbol != error.symbol || row.extrapolated) continue;
     range.low = std::fmin(range.low, row.value);
     range.high = std::fmax(range.high, row.value);
     range.expanded = std::fmax(range.expanded, result.coverage_factor * row.u);

@@ -47,7 +47,7 @@ std::vector<RotaryMotion> motions_of(const FitResult& result) {
   ErrorTableOptions options;
   options.positions = kPositionsOfAMotion;
   const std::vector<ErrorTableRow> table = error_table(result, options);
-  std::map<std::string, std::map<int, std::vector<const ErrorTableRow*>>> by_symbol;
+  std::map<MachineError, std::map<int, std::vector<const ErrorTableRow*>>> by_symbol;
   for (const ErrorTableRow& row : table) {
     if (row.axis && is_rotary(*row.axis)) by_symbol[row.symbol][row.direction].push_back(&row);
   }
@@ -55,7 +55,7 @@ std::vector<RotaryMotion> motions_of(const FitResult& result) {
   for (const AxisName axis : kAllAxes) {
     for (const Component component : kAllComponents) {
       const ErrorSymbol symbol{component, axis};
-      const auto rows = by_symbol.find(symbol.name());
+      const auto rows = by_symbol.find(symbol);
       if (rows != by_symbol.end()) motions.push_back(motion_of(result, symbol, rows->second));
     }
   }

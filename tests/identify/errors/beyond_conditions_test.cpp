@@ -104,7 +104,7 @@ TEST_F(BeyondConditions, GridsAndTablesSayTheSame) {
   options.conditions = conditions(40.0);
   int rows = 0;
   for (const ErrorTableRow& row : error_table(result_, options)) {
-    if (row.symbol != "EXX") continue;
+    if (row.symbol.name() != "EXX") continue;
     ++rows;
     EXPECT_TRUE(row.extrapolated);
     EXPECT_EQ(row.value, 0.0);

@@ -72,7 +72,7 @@ ErrorTableRow value_at(const FitResult& result, double x) {
   ErrorTableOptions options;
   options.step = kStepOfTravel;
   for (const ErrorTableRow& row : error_table(result, options)) {
-    if (row.symbol == "EXX" && std::abs(row.position - x) < 1e-9) return row;
+    if (row.symbol.name() == "EXX" && std::abs(row.position - x) < 1e-9) return row;
   }
   return {};
 }
@@ -93,7 +93,7 @@ TEST(PartOfTravel, ValuesAreThoseOfAShortAxis) {
 TEST(PartOfTravel, StepsOfTablesFollowThePieces) {
   double largest = 0.0, step = 0.0, before = 0.0;
   for (const ErrorTableRow& row : error_table(positioning_of(line_on(1.0)))) {
-    if (row.symbol != "EXX" || row.position > kMeasured + 1e-9) continue;
+    if (row.symbol.name() != "EXX" || row.position > kMeasured + 1e-9) continue;
     largest = std::max(largest, std::abs(row.value));
     step = std::max(step, row.position - before);
     before = row.position;

@@ -122,7 +122,7 @@ TEST(RigidCompromise, IsZeroAtHomeAndHoldsWhatOneAxisCan) {
   for (const ErrorTableRow& row : error_table(result)) {
     if (!row.axis || row.position != result.machine.axis(*row.axis).home) continue;
     ++at_home;
-    EXPECT_NEAR(row.value, 0.0, 1e-15) << row.symbol;
+    EXPECT_NEAR(row.value, 0.0, 1e-15) << row.symbol.name();
   }
   EXPECT_GT(at_home, 10);
   const TableFormat& format = *find_table_format("csv");

@@ -76,7 +76,7 @@ FitResult fitted(const Campaign& campaign, const std::vector<std::string>& symbo
 
 double u_at(const FitResult& result, const std::string& symbol, double position) {
   for (const ErrorTableRow& row : error_table(result, {.positions = 11})) {
-    if (row.symbol == symbol && std::abs(row.position - position) < 1e-9) return row.u;
+    if (row.symbol.name() == symbol && std::abs(row.position - position) < 1e-9) return row.u;
   }
   throw std::out_of_range(symbol);
 }

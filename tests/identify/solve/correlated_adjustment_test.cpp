@@ -283,7 +283,7 @@ double coverage(const sim::SimulatedCampaign& simulated, const FitResult& result
   const sim::TruthInDatum truth(simulated.truth);
   int inside = 0, all = 0;
   for (const ErrorTableRow& row : error_table(result)) {
-    const auto symbol = ErrorSymbol::parse(row.symbol);
+    const auto symbol = row.symbol.motion();
     if (!symbol || row.u == 0.0 || row.extrapolated) continue;
     inside += std::abs(row.value - truth.value(*symbol, row.position)) <= row.U95 ? 1 : 0;
     ++all;

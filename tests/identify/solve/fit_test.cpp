@@ -308,10 +308,10 @@ TEST(Fit, AnInvisibleFunctionIsNotMadeKnownBySmoothing) {
   ASSERT_FALSE(figure_of(result, "ECZ").visible);
   ASSERT_TRUE(figure_of(result, "EXX").visible);
   for (const ErrorTableRow& row : error_table(result)) {
-    if (row.symbol == "ECZ" && std::abs(row.position - result.machine.axis(AxisName::Z).home) > 0.1) {
+    if (row.symbol.name() == "ECZ" && std::abs(row.position - result.machine.axis(AxisName::Z).home) > 0.1) {
       EXPECT_GT(row.u, 50e-6) << row.position;
     }
-    if (row.symbol == "EXX") {
+    if (row.symbol.name() == "EXX") {
       EXPECT_LT(row.u, 2e-6) << row.position;
     }
   }

@@ -129,17 +129,17 @@ TEST_F(ParallelAxisFit, TablesHoldTheErrorsOfTheQuill) {
   const sim::TruthInDatum truth(simulated_->truth);
   int functions = 0, angles = 0;
   for (const ErrorTableRow& row : error_table(*result_)) {
-    const auto motion = ErrorSymbol::parse(row.symbol);
-    const auto location = LocationSymbol::parse(row.symbol);
+    const auto motion = row.symbol.motion();
+    const auto location = row.symbol.location();
     if (motion && motion->axis == AxisName::W) {
       ++functions;
-      EXPECT_NEAR(row.value, truth.value(*motion, row.position), 2.0 * row.U95 + 1e-9) << row.symbol;
-      EXPECT_LT(row.U95, 5e-6) << row.symbol;
+      EXPECT_NEAR(row.value, truth.value(*motion, row.position), 2.0 * row.U95 + 1e-9) << row.symbol.name();
+      EXPECT_LT(row.U95, 5e-6) << row.symbol.name();
     }
     if (location && location->axis == AxisName::W) {
       ++angles;
-      EXPECT_NEAR(row.value, truth.location(*location), 2.0 * row.U95) << row.symbol;
-      EXPECT_GT(std::abs(row.value), 2.0 * row.U95) << row.symbol;
+      EXPECT_NEAR(row.value, truth.location(*location), 2.0 * row.U95) << row.symbol.name();
+      EXPECT_GT(std::abs(row.value), 2.0 * row.U95) << row.symbol.name();
     }
   }
   EXPECT_GT(functions, 6 * 10);

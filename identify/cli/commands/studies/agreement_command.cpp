@@ -42,7 +42,7 @@ struct RatioRange {
 std::map<std::string, RatioRange> by_symbol(const std::vector<studies::AgreedValue>& values) {
   std::map<std::string, RatioRange> ranges;
   for (const studies::AgreedValue& value : values) {
-    ranges[value.symbol].add(value);
+    ranges[value.symbol.name()].add(value);
     ranges["all"].add(value);
   }
   return ranges;
@@ -75,7 +75,7 @@ nlohmann::ordered_json agreement_json(const studies::AgreementOptions& options,
   nlohmann::ordered_json json = {
       {"study", "agreement"}, {"campaigns", options.campaigns}, {"draws", options.draws}};
   for (const studies::AgreedValue& value : values) {
-    json["values"].push_back({{"symbol", value.symbol},
+    json["values"].push_back({{"symbol", value.symbol.name()},
                               {"montecarlo_over_linear", value.u_montecarlo / value.u_linear},
                               {"scatter_over_linear", value.u_scatter / value.u_linear}});
   }

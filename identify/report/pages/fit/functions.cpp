@@ -86,7 +86,7 @@ Json functions_page(const PageInput& input) {
   ErrorTableOptions options;
   options.positions = kPlottedPositions;
   const std::vector<ErrorTableRow> table = error_table(result, options);
-  std::map<std::string, FunctionRows> by_symbol;
+  std::map<MachineError, FunctionRows> by_symbol;
   for (const ErrorTableRow& row : table) {
     if (row.axis) by_symbol[row.symbol].by_direction[row.direction].push_back(&row);
   }
@@ -99,7 +99,7 @@ Json functions_page(const PageInput& input) {
                     {"range", {rounded(axis.travel_min * factor, 7), rounded(axis.travel_max * factor, 7)}}});
     for (const Component component : kAllComponents) {
       const ErrorSymbol symbol{component, axis.name};
-      const auto rows = by_symbol.find(symbol.name());
+      const auto rows = by_symbol.find(symbol);
       functions.push_back(function_json(result, symbol, rows == by_symbol.end() ? nullptr : &rows->second));
     }
   }

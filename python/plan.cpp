@@ -44,7 +44,7 @@ void set_target(const std::string& target, const std::vector<py::object>& separa
     settings.target = PlanTarget::Worst;
   } else if (target != "volumetric") {
     settings.target = PlanTarget::Symbol;
-    settings.symbol = target;
+    settings.symbol = MachineError::parse(target);
   }
 }
 
@@ -110,7 +110,7 @@ void define_plan(py::module_& module) {
           "expected_u", [](const CampaignPlan& plan) { return plan.plan.target_u; },
           "Standard uncertainty of what was minimised, SI.")
       .def_property_readonly(
-          "invisible", [](const CampaignPlan& plan) { return plan.plan.invisible(); },
+          "invisible", [](const CampaignPlan& plan) { return names_of(plan.plan.invisible()); },
           "Symbols of errors that it would not show.")
       .def(
           "to_json", [](const CampaignPlan& plan) { return text_of(plan_json(plan)); },

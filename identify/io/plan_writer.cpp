@@ -141,7 +141,7 @@ PlanJson campaign_json(const ExpectedCampaign& campaign) {
           {"worst_length_at", campaign.worst_length_at},
           {"u_worst_angle_urad", in_unit(campaign.worst_angle, kMicro)},
           {"worst_angle_at", campaign.worst_angle_at},
-          {"not_visible", campaign.invisible()},
+          {"not_visible", names_of(campaign.invisible())},
           {"errors", errors_json(campaign)},
           {"effects", effects_json(campaign)}};
 }
@@ -253,14 +253,14 @@ std::string plan_json(const CampaignPlan& plan) {
   PlanJson json = {{"format", kPlanFormat},
                    {"machine", plan.settings.machine.name},
                    {"minimised", name_of(plan.settings.target)}};
-  if (plan.settings.target == PlanTarget::Symbol) json["symbol"] = plan.settings.symbol;
+  if (plan.settings.target == PlanTarget::Symbol) json["symbol"] = plan.settings.symbol.name();
   json["budget"] = budget_json(plan);
   json["layout"] = layout_json(plan);
   if (plan.searched.textbook > 0.0)
     json["target_to_textbook"] = std::sqrt(plan.searched.value / plan.searched.textbook);
   if (plan.replaced)
     json["searched"] = {{"target_to_textbook", plan.replaced->target_ratio},
-                        {"not_visible", plan.replaced->invisible}};
+                        {"not_visible", names_of(plan.replaced->invisible)}};
   json["campaigns"].push_back(campaign_json(plan.plan));
   if (plan.settings.existing == nullptr) json["campaigns"].push_back(campaign_json(plan.textbook));
   if (plan.given) json["campaigns"].push_back(campaign_json(*plan.given));
@@ -272,8 +272,8 @@ std::string plan_json(const CampaignPlan& plan) {
                                {"new_tool", option.new_tool},
                                {"readings", option.readings},
                                {"u_volumetric_rms_um", in_unit(option.volumetric_rms, kMicro)},
-                               {"makes_visible", option.made_visible},
-                               {"still_not_visible", option.still_invisible}});
+                               {"makes_visible", names_of(option.made_visible)},
+                               {"still_not_visible", names_of(option.still_invisible)}});
   }
   if (!plan.findings.empty()) {
     json["messages"] = sentences(plan.findings);

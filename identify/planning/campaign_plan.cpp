@@ -44,7 +44,7 @@ VolumetricUncertainty volume_of(const FitResult& result, const PlanSettings& set
 double target_uncertainty(const ExpectedCampaign& expected, const PlanSettings& settings) {
   if (settings.target != PlanTarget::Symbol) return expected.volumetric.rms;
   for (const Observability& error : expected.result.rank.errors) {
-    if (error.symbol.name() == settings.symbol) return error.u_rms;
+    if (error.symbol == settings.symbol) return error.u_rms;
   }
   return std::nan("");
 }
@@ -64,12 +64,12 @@ void tell(const PlanSettings& settings, const std::string& stage, double done) {
 
 }  // namespace
 
-std::vector<std::string> ExpectedCampaign::invisible() const {
-  std::vector<std::string> symbols;
+std::vector<MachineError> ExpectedCampaign::invisible() const {
+  std::vector<MachineError> errors;
   for (const Observability& error : result.rank.errors) {
-    if (!error.visible) symbols.push_back(error.symbol.name());
+    if (!error.visible) errors.push_back(error.symbol);
   }
-  return symbols;
+  return errors;
 }
 
 ExpectedCampaign expected_campaign(const std::string& name, const Campaign& campaign,
@@ -99,7 +99,7 @@ double ratio_to_textbook(const CampaignPlan& plan) {
 }  // namespace
 
 void keep_the_surer(const PlanLayout& textbook, CampaignPlan& plan) {
-  const std::vector<std::string> lacks = plan.plan.invisible();
+  const std::vector<MachineError> lacks = plan.plan.invisible();
   const double ratio = ratio_to_textbook(plan);
   const PlanTarget target = plan.settings.target;
   const bool others_count = target == PlanTarget::Volumetric || target == PlanTarget::Worst;

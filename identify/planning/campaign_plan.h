@@ -31,7 +31,7 @@ struct ExpectedCampaign {
   double duration = 0.0;  ///< s; NaN when not planned here
   std::vector<DetectableEffect> detectable;
 
-  std::vector<std::string> invisible() const;  ///< symbols
+  std::vector<MachineError> invisible() const;
 };
 
 /// One setup more.
@@ -40,15 +40,15 @@ struct PlanOption {
   bool new_station = false;
   bool new_tool = false;  ///< that the machine file does not have
   std::size_t readings = 0;
-  double volumetric_rms = 0.0;            ///< m, with it
-  std::vector<std::string> made_visible;  ///< symbols
-  std::vector<std::string> still_invisible;
+  double volumetric_rms = 0.0;  ///< m, with it
+  std::vector<MachineError> made_visible;
+  std::vector<MachineError> still_invisible;
 };
 
 /// What the search found, where the textbook's layout turned out surer and took its place.
 struct ReplacedPlan {
-  double target_ratio = 0.0;           ///< of its uncertainty of the target to the textbook's
-  std::vector<std::string> invisible;  ///< symbols that it would not determine
+  double target_ratio = 0.0;            ///< of its uncertainty of the target to the textbook's
+  std::vector<MachineError> invisible;  ///< what it would not determine
 };
 
 struct CampaignPlan {

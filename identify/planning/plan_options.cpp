@@ -258,9 +258,9 @@ class OptionSearch {
     option.readings = layout.readings();
     option.volumetric_rms = with.volumetric.rms;
     option.still_invisible = with.invisible();
-    for (const std::string& symbol : now_.invisible()) {
-      if (std::ranges::find(option.still_invisible, symbol) == option.still_invisible.end())
-        option.made_visible.push_back(symbol);
+    for (const MachineError& error : now_.invisible()) {
+      if (std::ranges::find(option.still_invisible, error) == option.still_invisible.end())
+        option.made_visible.push_back(error);
     }
     return judged;
   }

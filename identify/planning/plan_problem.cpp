@@ -261,9 +261,9 @@ Eigen::MatrixXd PlanProblem::volume_functionals(const Linearised& at) const {
   return std::sqrt(3.0) * all;
 }
 
-Eigen::MatrixXd PlanProblem::symbol_functionals(const Linearised& at, const std::string& symbol) const {
+Eigen::MatrixXd PlanProblem::symbol_functionals(const Linearised& at, const MachineError& error) const {
   const ParameterLayout& layout = at.model.layout();
-  if (const auto motion = ErrorSymbol::parse(symbol); motion && layout.find(*motion)) {
+  if (const auto motion = error.motion(); motion && layout.find(*motion)) {
     const auto place = *layout.find(*motion);
     const FunctionGroup& group = layout.groups[static_cast<std::size_t>(place.group)];
     const Axis& axis = settings_.machine.axis(motion->axis);
@@ -275,14 +275,14 @@ Eigen::MatrixXd PlanProblem::symbol_functionals(const Linearised& at, const std:
     }
     return at.datum.reduce_rows(rows);
   }
-  if (const auto location = LocationSymbol::parse(symbol)) {
+  if (const auto location = error.location()) {
     if (const ParameterBlock* block = layout.find_location(*location)) {
       Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, layout.size);
       row(0, block->offset) = 1.0;
       return at.datum.reduce_rows(row);
     }
   }
-  throw InputError({}, "\"" + symbol + "\" is not an error of this machine and model",
+  throw InputError({}, "\"" + error.name() + "\" is not an error of this machine and model",
                    "name one such as EXX, EC0Y, or volumetric, worst, separate:KIND:TARGET,KIND:TARGET");
 }
 
@@ -309,13 +309,12 @@ Eigen::MatrixXd PlanProblem::table_functionals(const Linearised& at) const {
   std::vector<Eigen::MatrixXd> parts;
   Eigen::Index rows = 0;
   for (const ErrorSymbol symbol : layout.symbols()) {
-    parts.emplace_back(symbol_functionals(at, symbol.name()) *
-                       lever_of(symbol.axis, symbol.component, false));
+    parts.emplace_back(symbol_functionals(at, symbol) * lever_of(symbol.axis, symbol.component, false));
     rows += parts.back().rows();
   }
   for (const ParameterBlock& block : layout.blocks) {
     if (!block.location) continue;
-    parts.emplace_back(symbol_functionals(at, block.location->name()) *
+    parts.emplace_back(symbol_functionals(at, *block.location) *
                        lever_of(block.location->axis, block.location->component, true));
     rows += parts.back().rows();
   }

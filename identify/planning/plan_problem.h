@@ -57,7 +57,7 @@ class PlanProblem {
   void for_each_volume_pose(const Use& use) const;
   Eigen::MatrixXd volume_functionals(const Linearised& at) const;
   Eigen::MatrixXd table_functionals(const Linearised& at) const;
-  Eigen::MatrixXd symbol_functionals(const Linearised& at, const std::string& symbol) const;
+  Eigen::MatrixXd symbol_functionals(const Linearised& at, const MachineError& error) const;
   Eigen::MatrixXd effect_functionals(const Linearised& at) const;
   Eigen::MatrixXd known(const Linearised& at) const;
   Campaign campaign_with_existing(const PlanLayout& layout) const;

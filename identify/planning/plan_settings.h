@@ -13,6 +13,7 @@
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/finding.h"
 #include "volcal/model/description/machine.h"
+#include "volcal/model/description/machine_error.h"
 #include "volcal/model/description/model_spec.h"
 
 namespace volcal {
@@ -94,7 +95,7 @@ struct PlanSettings {
   PlanBudget budget;
   FunctionRoughnessGuess roughness;
   PlanTarget target = PlanTarget::Volumetric;
-  std::string symbol;                ///< of PlanTarget::Symbol
+  MachineError symbol;               ///< of PlanTarget::Symbol
   std::vector<EffectSpec> separate;  ///< two effects of PlanTarget::Separate
   /// Readings that are taken already, or will be: the plan adds to them.
   const Campaign* existing = nullptr;

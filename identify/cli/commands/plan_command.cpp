@@ -124,7 +124,7 @@ void read_target(const PlanArguments& arguments, const Campaign* with, PlanSetti
   }
   if (!arguments.target.starts_with(separate)) {
     settings.target = PlanTarget::Symbol;
-    settings.symbol = arguments.target;
+    settings.symbol = MachineError::parse(arguments.target);
     return;
   }
   settings.target = PlanTarget::Separate;

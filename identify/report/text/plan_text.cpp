@@ -155,7 +155,7 @@ std::string figures_table(const CampaignPlan& plan) {
                    {"not visible", Align::Left}},
                   "What it would tell (standard uncertainties)");
   for (const ExpectedCampaign* each : compared(plan)) {
-    const std::vector<std::string> hidden = each->invisible();
+    const std::vector<std::string> hidden = names_of(each->invisible());
     table.add_row({each->name, count_number(static_cast<long long>(places_of(each->campaign, words).size())),
                    count_number(static_cast<long long>(each->campaign.setups.size())),
                    count_number(static_cast<long long>(each->campaign.reading_count())),
@@ -245,8 +245,8 @@ std::string options_table(const CampaignPlan& plan) {
   for (const PlanOption& option : plan.options) {
     table.add_row({sentence(option.what), count_number(static_cast<long long>(option.readings)),
                    fixed_number(option.volumetric_rms * kPerMicro, 3),
-                   option.made_visible.empty() ? "-" : joined_words(option.made_visible),
-                   option.still_invisible.empty() ? "-" : joined_words(option.still_invisible)});
+                   option.made_visible.empty() ? "-" : joined_words(names_of(option.made_visible)),
+                   option.still_invisible.empty() ? "-" : joined_words(names_of(option.still_invisible))});
   }
   return table.empty() ? "" : "\n" + table.text();
 }
@@ -269,7 +269,7 @@ std::string target_words(const PlanSettings& settings) {
     case PlanTarget::Worst:
       return "largest uncertainty of a table value, rotations by their lever";
     case PlanTarget::Symbol:
-      return "uncertainty of " + settings.symbol;
+      return "uncertainty of " + settings.symbol.name();
     case PlanTarget::Separate:
       break;
   }
@@ -298,7 +298,7 @@ std::string replaced_words(const CampaignPlan& plan) {
       fmt::format("The plan is the textbook layout. What the search found: {}, {:.1f} % {}",
                   target_words(plan.settings), 100.0 * std::abs(1.0 - ratio), ratio >= 1.0 ? "more" : "less");
   if (plan.replaced->invisible.size() > plan.plan.invisible().size())
-    text += "; " + joined_words(plan.replaced->invisible) + " not determined";
+    text += "; " + joined_words(names_of(plan.replaced->invisible)) + " not determined";
   return text + ".";
 }
 

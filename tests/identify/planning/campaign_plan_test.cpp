@@ -215,7 +215,7 @@ TEST(CampaignPlan, KeepsTheTextbookWhereTheSearchLosesAnError) {
   lost.visible = false;
   CampaignPlan of_one_error = plan;
   of_one_error.settings.target = PlanTarget::Symbol;
-  of_one_error.settings.symbol = "EC0Y";
+  of_one_error.settings.symbol = MachineError::parse("EC0Y");
   const std::string symbol = lost.symbol.name();
   keep_the_surer(textbook, plan);
   ASSERT_TRUE(plan.replaced);
@@ -257,7 +257,7 @@ TEST(CampaignPlan, KeepsToTheTimeAndDoesNotDependOnThreads) {
 TEST(CampaignPlan, MinimisesTheErrorThatIsNamed) {
   PlanSettings settings = small_plan();
   settings.target = PlanTarget::Symbol;
-  settings.symbol = "EXX";
+  settings.symbol = MachineError::parse("EXX");
   const CampaignPlan named = plan_campaign(settings, nullptr);
   EXPECT_LT(named.plan.target_u, named.textbook.target_u);
   const auto u_of = [](const CampaignPlan& plan) {
@@ -267,7 +267,7 @@ TEST(CampaignPlan, MinimisesTheErrorThatIsNamed) {
     return std::nan("");
   };
   EXPECT_LT(u_of(named), u_of(volumetric_plan()));
-  settings.symbol = "EXA";
+  settings.symbol = MachineError::parse("EXA");
   EXPECT_THROW(plan_campaign(settings, nullptr), InputError);
 }
 
@@ -279,15 +279,15 @@ TEST(CampaignPlan, FindsTheToolThatMakesARollVisible) {
   const LineOfSight sight(settings);
   const Campaign measured = campaign_of(textbook_layout(settings, sight), settings);
   const ExpectedCampaign before = expected_campaign("given", measured, settings, false);
-  ASSERT_THAT(before.invisible(), Contains("ECZ"));
+  ASSERT_THAT(names_of(before.invisible()), Contains("ECZ"));
   settings.existing = &measured;
   settings.budget.stations = 1;
   settings.budget.readings = 120;
   const CampaignPlan plan = extend_campaign(settings);
-  EXPECT_THAT(plan.plan.invisible(), Not(Contains("ECZ")));
+  EXPECT_THAT(names_of(plan.plan.invisible()), Not(Contains("ECZ")));
   ASSERT_FALSE(plan.options.empty());
   EXPECT_TRUE(plan.options.front().new_tool);
-  EXPECT_THAT(plan.options.front().made_visible, Contains("ECZ"));
+  EXPECT_THAT(names_of(plan.options.front().made_visible), Contains("ECZ"));
   EXPECT_EQ(plan.settings.machine.tools.size(), 2U);
   EXPECT_GT(std::abs(plan.settings.machine.tools.back().offset.x()) +
                 std::abs(plan.settings.machine.tools.back().offset.y()),

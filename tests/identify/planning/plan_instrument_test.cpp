@@ -240,7 +240,7 @@ TEST(BallBarPlan, FindsTheBestPair) {
   PlanSettings settings = one_bar();
   settings.budget.readings = 144;
   settings.target = PlanTarget::Symbol;
-  settings.symbol = "EC0Y";
+  settings.symbol = MachineError::parse("EC0Y");
   const PlanProblem problem(settings);
   settings.budget.readings = 432;
   const PlanLayout all = textbook_layout(settings, LineOfSight(settings));

@@ -100,7 +100,7 @@ Json campaign_of_page(const ExpectedCampaign& expected, const CampaignPlan& plan
           {"worst_length_at", expected.worst_length_at},
           {"worst_angle_urad", rounded(expected.worst_angle * kPerMicro, 3)},
           {"worst_angle_at", expected.worst_angle_at},
-          {"not_visible", expected.invisible()},
+          {"not_visible", names_of(expected.invisible())},
           {"may_be_off_mm", std::move(tolerance)}};
 }
 
@@ -118,8 +118,8 @@ Json plan_layout_page(const PlanPageInput& input) {
     options.push_back({{"words", sentence(option.what)},
                        {"readings", option.readings},
                        {"u_um", rounded(option.volumetric_rms * kPerMicro, 4)},
-                       {"made_visible", option.made_visible},
-                       {"still_invisible", option.still_invisible}});
+                       {"made_visible", names_of(option.made_visible)},
+                       {"still_invisible", names_of(option.still_invisible)}});
   }
   const InstrumentWords words = sight.instrument().words();
   Json rotary = Json::array();

@@ -10,14 +10,14 @@ constexpr int kSamples = 11;  ///< positions per function
 
 /// Rows that map the parameters to the values of one error.
 struct ErrorRows {
-  std::string symbol;
+  MachineError error;
   Eigen::MatrixXd rows;
 };
 
 ErrorRows function_rows(const FitResult& result, const FunctionGroup& group, int slot) {
   const ErrorSymbol symbol = group.symbols[static_cast<std::size_t>(slot)];
   const Axis& axis = result.machine.axis(symbol.axis);
-  ErrorRows error{symbol.name(), Eigen::MatrixXd::Zero(kSamples, result.layout.size)};
+  ErrorRows error{symbol, Eigen::MatrixXd::Zero(kSamples, result.layout.size)};
   for (int i = 0; i < kSamples; ++i) {
     const Eigen::VectorXd values = group.basis->row(axis.travel_min + axis.travel() * i / (kSamples - 1));
     for (int j = 0; j < values.size(); ++j) error.rows(i, group.index(j, slot)) = values[j];
@@ -32,7 +32,7 @@ std::vector<ErrorRows> all_errors(const FitResult& result) {
   }
   for (const ParameterBlock& block : result.layout.blocks) {
     if (!block.location) continue;
-    ErrorRows error{block.location->name(), Eigen::MatrixXd::Zero(1, result.layout.size)};
+    ErrorRows error{*block.location, Eigen::MatrixXd::Zero(1, result.layout.size)};
     error.rows(0, block.offset) = 1.0;
     errors.push_back(std::move(error));
   }
@@ -48,7 +48,7 @@ ErrorCorrelation error_correlation(const FitResult& result) {
   correlation.value = Eigen::MatrixXd::Identity(count, count);
   Eigen::MatrixXd energy(count, count);
   for (Eigen::Index a = 0; a < count; ++a) {
-    correlation.symbol.push_back(errors[static_cast<std::size_t>(a)].symbol);
+    correlation.errors.push_back(errors[static_cast<std::size_t>(a)].error);
     const Eigen::MatrixXd half = errors[static_cast<std::size_t>(a)].rows * result.covariance;
     for (Eigen::Index b = 0; b <= a; ++b) {
       energy(a, b) = (half * errors[static_cast<std::size_t>(b)].rows.transpose()).squaredNorm();

@@ -2,7 +2,6 @@
 /// Correlation between whole error functions.
 
 #include <Eigen/Core>
-#include <string>
 #include <vector>
 
 #include "volcal/identify/result/result.h"
@@ -10,7 +9,7 @@
 namespace volcal::report {
 
 struct ErrorCorrelation {
-  std::vector<std::string> symbol;
+  std::vector<MachineError> errors;
   /// Symmetric, 0..1. For functions f, g sampled along their axes, with covariance blocks S:
   /// sqrt(tr(S_fg S_gf) / sqrt(tr(S_ff^2) tr(S_gg^2))), the square root of the RV coefficient (Robert and
   /// Escoufier 1976); for two scalars it is |correlation|.

@@ -501,7 +501,7 @@ TEST(ResidualSample, KeepsFlaggedAndWorstAndIsRepeatable) {
 TEST(ErrorCorrelation, OfTwoScalarsIsTheAbsoluteCorrelation) {
   const FitResult result = test::synthetic_fit().result;
   const report::ErrorCorrelation correlation = report::error_correlation(result);
-  ASSERT_EQ(correlation.symbol.size(), 20u);  // 17 functions, 3 squareness errors
+  ASSERT_EQ(correlation.errors.size(), 20u);  // 17 functions, 3 squareness errors
   const auto& blocks = result.layout.blocks;
   const double expected = std::abs(result.covariance(blocks[0].offset, blocks[1].offset)) /
                           std::sqrt(result.covariance(blocks[0].offset, blocks[0].offset) *
@@ -535,7 +535,7 @@ TEST(ErrorCorrelation, OfTwoFunctionsByHand) {
   result.layout.groups = {group};
   result.layout.size = result.layout.function_size = 4;
   const report::ErrorCorrelation correlation = report::error_correlation(result);
-  ASSERT_EQ(correlation.symbol.size(), 2u);
+  ASSERT_EQ(correlation.errors.size(), 2u);
   EXPECT_NEAR(correlation.value(0, 1), 0.389960, 1e-6);
   EXPECT_EQ(correlation.value(0, 1), correlation.value(1, 0));
   EXPECT_EQ(correlation.value(0, 0), 1.0);

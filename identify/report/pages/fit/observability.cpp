@@ -34,7 +34,7 @@ Json correlation_json(const FitResult& result) {
       row.push_back(rounded(correlation.value(a, b), 3));
     rows.push_back(std::move(row));
   }
-  return {{"symbol", correlation.symbol}, {"value", std::move(rows)}};
+  return {{"symbol", names_of(correlation.errors)}, {"value", std::move(rows)}};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -17,12 +18,14 @@
 namespace volcal {
 namespace {
 
+using By = Grouping::Kind;
+
 constexpr int kNoCell = -1;
 constexpr std::size_t kFewestPerBlock = 30;
 
 /// Puts every reading into one of the labelled cells, or into none.
 struct Classifier {
-  std::string by;
+  Grouping by;
   std::vector<std::string> labels;
   std::function<int(std::size_t setup, std::size_t row)> cell;
 };
@@ -42,17 +45,18 @@ class LabelIndex {
   std::vector<std::string> labels_;
 };
 
-Classifier by_setup_label(const std::string& by, const Campaign& campaign,
+Classifier by_setup_label(By by, const Campaign& campaign,
                           const std::function<std::string(const Setup&)>& label) {
   LabelIndex index;
   std::vector<int> cells;
   for (const Setup& setup : campaign.setups) cells.push_back(index(label(setup)));
-  return {by, index.labels(), [cells](std::size_t setup, std::size_t) { return cells[setup]; }};
+  return {{by}, index.labels(), [cells](std::size_t setup, std::size_t) { return cells[setup]; }};
 }
 
 /// Cells by a whole-number column; setups without it are left out.
-Classifier by_number(const std::string& by, const Campaign& campaign,
-                     const std::vector<std::int32_t> Readings::*column, bool within_setup) {
+Classifier by_number(By kind, const Campaign& campaign, const std::vector<std::int32_t> Readings::*column,
+                     bool within_setup) {
+  const Grouping by{kind};
   LabelIndex index;
   std::vector<std::map<std::int32_t, int>> cells(campaign.setups.size());
   for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
@@ -64,7 +68,7 @@ Classifier by_number(const std::string& by, const Campaign& campaign,
     }();
     if (within_setup && unique.size() < 2) continue;
     for (const auto& [number, unused] : unique) {
-      const std::string label = fmt::format("{} {}", by, number);
+      const std::string label = fmt::format("{} {}", by.name(), number);
       cells[i][number] = index(within_setup ? setup.name + " " + label : label);
     }
   }
@@ -119,7 +123,7 @@ std::vector<AxisName> moving_axes(const Campaign& campaign) {
 Classifier by_position(const Campaign& campaign, AxisName name, int count) {
   const Axis& axis = campaign.machine.axis(name);
   const Bins bins = Bins::over(axis.travel_min, axis.travel_max, count);
-  Classifier classifier{{letter_of(name)}, {}, {}};
+  Classifier classifier{{By::Position, name}, {}, {}};
   for (int bin = 0; bin < count; ++bin) {
     classifier.labels.push_back(fmt::format("{} {} {}", letter_of(name),
                                             bins.label(bin, position_unit(name).si_per_unit),
@@ -135,7 +139,7 @@ Classifier by_direction(const Campaign& campaign, AxisName name) {
   std::vector<std::vector<int>> approach;
   for (const Setup& setup : campaign.setups) approach.push_back(axis_approach(setup.readings, name));
   const std::string letter{letter_of(name)};
-  return {"direction of " + letter,
+  return {{By::Direction, name},
           {letter + "+", letter + "-", letter + " unknown"},
           [approach](std::size_t setup, std::size_t row) {
             const int direction = approach[setup][row];
@@ -153,7 +157,7 @@ Classifier by_region(const Campaign& campaign, const std::vector<AxisName>& movi
     bins.push_back(Bins::over(axis.travel_min, axis.travel_max, blocks));
   }
   const auto count = static_cast<int>(std::lround(std::pow(blocks, static_cast<double>(axes.size()))));
-  Classifier classifier{"region", std::vector<std::string>(static_cast<std::size_t>(count)), {}};
+  Classifier classifier{{By::Region}, std::vector<std::string>(static_cast<std::size_t>(count)), {}};
   for (int cell = 0; cell < count; ++cell) {
     std::string& label = classifier.labels[static_cast<std::size_t>(cell)];
     int rest = cell;
@@ -183,7 +187,7 @@ std::optional<Classifier> by_time(const Campaign& campaign, int count) {
   }
   if (!low || !(*high > *low)) return std::nullopt;
   const Bins bins = Bins::over(*low, *high, count);
-  Classifier classifier{"time", {}, {}};
+  Classifier classifier{{By::Time}, {}, {}};
   for (int bin = 0; bin < count; ++bin) {
     classifier.labels.push_back(fmt::format("{:.0f} to {:.0f} s", bins.start(bin), bins.start(bin + 1)));
   }
@@ -202,16 +206,17 @@ int region_blocks(const ComparisonOptions& options, std::size_t observations) {
 std::vector<Classifier> all_classifiers(const Campaign& campaign, const ComparisonOptions& options,
                                         std::size_t observations) {
   std::vector<Classifier> all;
-  all.push_back(by_setup_label("setup", campaign, [](const Setup& setup) { return setup.name; }));
-  all.push_back(by_setup_label("instrument", campaign, [](const Setup& setup) { return setup.instrument; }));
-  all.push_back(by_setup_label("tool", campaign,
+  all.push_back(by_setup_label(By::Setup, campaign, [](const Setup& setup) { return setup.name; }));
+  all.push_back(
+      by_setup_label(By::Instrument, campaign, [](const Setup& setup) { return setup.instrument; }));
+  all.push_back(by_setup_label(By::Tool, campaign,
                                [&](const Setup& setup) { return campaign.machine.tools[setup.tool].name; }));
   const std::vector<AxisName> moving = moving_axes(campaign);
   for (const AxisName axis : moving) all.push_back(by_position(campaign, axis, options.position_bins));
   for (const AxisName axis : moving) all.push_back(by_direction(campaign, axis));
   all.push_back(by_region(campaign, moving, region_blocks(options, observations)));
-  all.push_back(by_number("line", campaign, &Readings::line, true));
-  all.push_back(by_number("run", campaign, &Readings::run, false));
+  all.push_back(by_number(By::Line, campaign, &Readings::line, true));
+  all.push_back(by_number(By::Run, campaign, &Readings::run, false));
   if (auto time = by_time(campaign, options.time_bins)) all.push_back(std::move(*time));
   return all;
 }
@@ -290,13 +295,19 @@ std::vector<std::size_t> worst_readings(std::span<const ResidualRecord> records,
 
 }  // namespace
 
-const Breakdown* Comparison::find(const std::string& by) const {
-  const auto found = std::find_if(breakdowns.begin(), breakdowns.end(),
-                                  [&](const Breakdown& breakdown) { return breakdown.by == by; });
+std::string Grouping::name() const {
+  constexpr std::array<const char*, 9> kNames = {"setup",  "instrument", "tool", "",    "direction of ",
+                                                 "region", "line",       "run",  "time"};
+  const bool of_axis = kind == By::Position || kind == By::Direction;
+  return kNames[static_cast<std::size_t>(kind)] + (of_axis ? std::string(1, letter_of(axis)) : "");
+}
+
+const Breakdown* Comparison::find(const Grouping& by) const {
+  const auto found = std::ranges::find(breakdowns, by, &Breakdown::by);
   return found == breakdowns.end() ? nullptr : &*found;
 }
 
-const ComparisonCell* Comparison::find_cell(const std::string& by, const std::string& label) const {
+const ComparisonCell* Comparison::find_cell(const Grouping& by, const std::string& label) const {
   const Breakdown* breakdown = find(by);
   if (breakdown == nullptr) return nullptr;
   const auto found = std::ranges::find(breakdown->cells, label, &ComparisonCell::label);
@@ -318,7 +329,7 @@ Comparison compare(const Campaign& campaign, std::span<const ResidualRecord> rec
   finish(comparison.total);
   for (const Classifier& classifier : all_classifiers(campaign, options, comparison.total.observations)) {
     Breakdown breakdown = break_down(classifier, records, is_angle);
-    if (breakdown.cells.size() < 2 && breakdown.by != "setup") continue;
+    if (breakdown.cells.size() < 2 && breakdown.by.kind != By::Setup) continue;
     comparison.breakdowns.push_back(std::move(breakdown));
   }
   judge(comparison, options.family_risk);

@@ -8,6 +8,7 @@
 
 #include "volcal/identify/result/result.h"
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/symbols.h"
 
 namespace volcal {
 
@@ -37,8 +38,19 @@ struct ComparisonCell {
   double reduced_chi2() const { return dof > 0.0 ? chi2 / dof : 0.0; }
 };
 
+/// What the observations of a cell share.
+struct Grouping {
+  enum class Kind { Setup, Instrument, Tool, Position, Direction, Region, Line, Run, Time };
+  Kind kind = Kind::Setup;
+  AxisName axis = AxisName::X;  ///< of a position or direction of approach
+
+  /// "setup", "instrument", "tool", "X", "direction of X", "region", "line", "run", "time"
+  std::string name() const;
+  friend bool operator==(const Grouping&, const Grouping&) = default;
+};
+
 struct Breakdown {
-  std::string by;  ///< "setup", "instrument", "tool", "line", "X", "direction of X", "region", "time", "run"
+  Grouping by;
   std::vector<ComparisonCell> cells;  ///< natural order, empty cells left out
 };
 
@@ -57,8 +69,8 @@ struct Comparison {
   std::vector<Breakdown> breakdowns;
   std::vector<std::size_t> worst;  ///< indices of records by falling |residual / sigma|, removed ones too
 
-  const Breakdown* find(const std::string& by) const;
-  const ComparisonCell* find_cell(const std::string& by, const std::string& label) const;
+  const Breakdown* find(const Grouping& by) const;
+  const ComparisonCell* find_cell(const Grouping& by, const std::string& label) const;
 };
 
 /// Breakdowns that would have a single cell (one tool, an axis that never moves, no time column) are left

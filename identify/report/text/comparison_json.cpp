@@ -213,7 +213,7 @@ Json breakdowns_json(const Comparison& comparison) {
   for (const Breakdown& breakdown : comparison.breakdowns) {
     Json cells = Json::array();
     for (const ComparisonCell& cell : breakdown.cells) cells.push_back(written_cell(cell));
-    breakdowns[breakdown.by] = std::move(cells);
+    breakdowns[breakdown.by.name()] = std::move(cells);
   }
   return breakdowns;
 }

@@ -20,6 +20,8 @@ constexpr std::size_t kPlacesTold = 3;
 constexpr std::size_t kCellsShown = 3;
 constexpr std::size_t kSetupsShown = 40;
 
+using By = Grouping::Kind;
+
 const char* const kSuffix[] = {" A", " B"};
 
 std::string observations_text(std::size_t count) {
@@ -40,11 +42,12 @@ std::vector<std::pair<std::string, const ComparisonCell*>> worst_places(const Co
                                                                         double least) {
   std::vector<std::pair<std::string, const ComparisonCell*>> places;
   for (const Breakdown& breakdown : comparison.breakdowns) {
-    if (breakdown.by == "line" || breakdown.by == "instrument") continue;
+    const By kind = breakdown.by.kind;
+    if (kind == By::Line || kind == By::Instrument) continue;
     const ComparisonCell* cell = worst_cell(breakdown, condition);
     if (!cell || cell->reduced_chi2() < least) continue;
-    const bool named = breakdown.by == "setup" || breakdown.by == "tool" || breakdown.by == "time";
-    places.emplace_back((named ? breakdown.by + " " : "") + cell->label, cell);
+    const bool named = kind == By::Setup || kind == By::Tool || kind == By::Time;
+    places.emplace_back((named ? breakdown.by.name() + " " : "") + cell->label, cell);
   }
   std::stable_sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
     return a.second->reduced_chi2() > b.second->reduced_chi2();
@@ -134,14 +137,6 @@ class CellColumns {
   bool angles_ = false;
 };
 
-const ComparisonCell* same_cell(const Comparison& model, const std::string& by, const std::string& label) {
-  const Breakdown* breakdown = model.find(by);
-  if (!breakdown) return nullptr;
-  const auto found = std::find_if(breakdown->cells.begin(), breakdown->cells.end(),
-                                  [&](const ComparisonCell& cell) { return cell.label == label; });
-  return found == breakdown->cells.end() ? nullptr : &*found;
-}
-
 /// Cells in their natural order when there are few, else the worst ones by the last model, worst first.
 std::vector<const ComparisonCell*> shown_cells(const Breakdown& breakdown, std::size_t most) {
   std::vector<const ComparisonCell*> cells;
@@ -163,12 +158,12 @@ Comparisons comparisons_of(std::span<const Model> models) {
   return all;
 }
 
-std::vector<std::string> row_of(const std::string& by, const std::string& label, std::size_t count,
+std::vector<std::string> row_of(const Grouping& by, const std::string& label, std::size_t count,
                                 const Comparisons& models, const CellColumns& columns) {
   static const ComparisonCell kNone;
   std::vector<const ComparisonCell*> cells;
   for (const Comparison* model : models) {
-    const ComparisonCell* cell = same_cell(*model, by, label);
+    const ComparisonCell* cell = model->find_cell(by, label);
     cells.push_back(cell ? cell : &kNone);
   }
   std::vector<std::string> row = {label, count_number(static_cast<long long>(count))};
@@ -178,7 +173,7 @@ std::vector<std::string> row_of(const std::string& by, const std::string& label,
 
 std::string setups_text(const Campaign& campaign, const Comparisons& models, bool all, std::string title) {
   const CellColumns cell_columns(models);
-  const Breakdown& setups = *models.back()->find("setup");
+  const Breakdown& setups = *models.back()->find({By::Setup});
   std::vector<TextColumn> columns = {{"setup", Align::Left}, {"instrument", Align::Left}, {"n"}};
   cell_columns.add_headers(columns);
   const auto shown = shown_cells(setups, all ? setups.cells.size() : kSetupsShown);
@@ -187,7 +182,7 @@ std::string setups_text(const Campaign& campaign, const Comparisons& models, boo
   }
   TextTable table(columns, title);
   for (const ComparisonCell* cell : shown) {
-    auto row = row_of("setup", cell->label, cell->observations, models, cell_columns);
+    auto row = row_of({By::Setup}, cell->label, cell->observations, models, cell_columns);
     const auto setup = std::find_if(campaign.setups.begin(), campaign.setups.end(),
                                     [&](const Setup& one) { return one.name == cell->label; });
     row.insert(row.begin() + 1, setup->instrument);
@@ -211,8 +206,8 @@ std::string places_text(const Comparisons& models, const ComparisonTextOptions& 
                       ? std::string("Residuals by place, direction and time")
                       : fmt::format("Residuals by place, direction and time, worst {} of each", kCellsShown));
   for (const Breakdown& breakdown : models.back()->breakdowns) {
-    if (breakdown.by == "setup") continue;
-    std::string by = fmt::format("{} ({})", breakdown.by, breakdown.cells.size());
+    if (breakdown.by.kind == By::Setup) continue;
+    std::string by = fmt::format("{} ({})", breakdown.by.name(), breakdown.cells.size());
     for (const ComparisonCell* cell :
          shown_cells(breakdown, options.all_cells ? breakdown.cells.size() : kCellsShown)) {
       auto row = row_of(breakdown.by, cell->label, cell->observations, models, cell_columns);

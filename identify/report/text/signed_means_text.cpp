@@ -12,6 +12,7 @@
 namespace volcal {
 namespace {
 
+using By = Grouping::Kind;
 using Models = std::span<const Comparison* const>;
 
 /// Lengths in um or angles in urad.
@@ -21,7 +22,7 @@ struct MeanKind {
 };
 constexpr MeanKind kMeanKinds[] = {{&ComparisonCell::lengths, "um"}, {&ComparisonCell::angles, "urad"}};
 
-bool tells_signs(const std::string& by) { return by == "setup" || by.starts_with("direction of "); }
+bool tells_signs(By by) { return by == By::Setup || by == By::Direction; }
 
 std::vector<const ComparisonCell*> told_cells(const Breakdown& breakdown, const MeanKind& kind,
                                               std::size_t most) {
@@ -41,7 +42,7 @@ std::vector<const ComparisonCell*> told_cells(const Breakdown& breakdown, const 
 
 void add_means_of(const Breakdown& breakdown, const MeanKind& kind, Models models, std::size_t most,
                   TextTable& table) {
-  std::string by = breakdown.by;
+  std::string by = breakdown.by.name();
   for (const ComparisonCell* cell : told_cells(breakdown, kind, most)) {
     std::vector<std::string> row = {by, cell->label,
                                     count_number(static_cast<long long>((cell->*kind.size).count))};
@@ -70,11 +71,11 @@ std::string signed_means_text(Models models, std::size_t most) {
   columns.push_back({"unit", Align::Left});
   TextTable table(columns, "Signed means of the residuals, reading minus prediction");
   const auto& breakdowns = models.back()->breakdowns;
-  const bool one_setup =
-      models.back()->find("setup") != nullptr && models.back()->find("setup")->cells.size() < 2;
+  const Breakdown* setups = models.back()->find({By::Setup});
+  const bool one_setup = setups != nullptr && setups->cells.size() < 2;
   for (const bool directions : {true, false}) {
     for (const Breakdown& breakdown : breakdowns) {
-      if (!tells_signs(breakdown.by) || (breakdown.by != "setup") != directions) continue;
+      if (!tells_signs(breakdown.by.kind) || (breakdown.by.kind != By::Setup) != directions) continue;
       if (!directions && one_setup) continue;
       for (const MeanKind& kind : kMeanKinds) add_means_of(breakdown, kind, models, most, table);
     }

@@ -9,6 +9,7 @@ namespace volcal {
 namespace {
 
 using ::testing::ElementsAre;
+using By = Grouping::Kind;
 
 /// One axis X of 0 to 1 m and Y of 0 to 0.5 m; a tracer setup S1 (tool a) and a level setup S2 (tool b).
 Campaign small_campaign() {
@@ -83,10 +84,10 @@ TEST(Compare, TotalsAndSetups) {
   EXPECT_NEAR(comparison.total.lengths.max, 4e-6, 1e-15);
   EXPECT_NEAR(comparison.total.angles.rms, std::sqrt(5.0 / 4.0) * 1e-6, 1e-15);
   EXPECT_NEAR(comparison.total.angles.max, 2e-6, 1e-15);
-  EXPECT_THAT(labels(comparison.find("setup")), ElementsAre("S1", "S2"));
-  EXPECT_THAT(chi2(comparison.find("setup")), ElementsAre(14.0, 2.0));
-  EXPECT_THAT(labels(comparison.find("instrument")), ElementsAre("laser-tracer", "angle"));
-  EXPECT_THAT(labels(comparison.find("tool")), ElementsAre("a", "b"));
+  EXPECT_THAT(labels(comparison.find({By::Setup})), ElementsAre("S1", "S2"));
+  EXPECT_THAT(chi2(comparison.find({By::Setup})), ElementsAre(14.0, 2.0));
+  EXPECT_THAT(labels(comparison.find({By::Instrument})), ElementsAre("laser-tracer", "angle"));
+  EXPECT_THAT(labels(comparison.find({By::Tool})), ElementsAre("a", "b"));
 }
 
 /// Ten bins of X, 100 mm each: 50 mm in the first (1 + 0), 450 mm in the fifth (4 + 0 + 1 + 1), 950 mm in the
@@ -95,13 +96,13 @@ TEST(Compare, TotalsAndSetups) {
 TEST(Compare, PositionsAndRegions) {
   const Campaign campaign = small_campaign();
   const Comparison comparison = compare(campaign, small_records());
-  EXPECT_THAT(labels(comparison.find("X")),
+  EXPECT_THAT(labels(comparison.find({By::Position, AxisName::X})),
               ElementsAre("X 0 to 100 mm", "X 400 to 500 mm", "X 900 to 1000 mm"));
-  EXPECT_THAT(chi2(comparison.find("X")), ElementsAre(1.0, 6.0, 9.0));
-  EXPECT_THAT(labels(comparison.find("region")),
+  EXPECT_THAT(chi2(comparison.find({By::Position, AxisName::X})), ElementsAre(1.0, 6.0, 9.0));
+  EXPECT_THAT(labels(comparison.find({By::Region})),
               ElementsAre("X 0 to 500, Y 0 to 250 mm", "X 0 to 500, Y 250 to 500 mm",
                           "X 500 to 1000, Y 250 to 500 mm"));
-  EXPECT_THAT(chi2(comparison.find("region")), ElementsAre(6.0, 1.0, 9.0));
+  EXPECT_THAT(chi2(comparison.find({By::Region})), ElementsAre(6.0, 1.0, 9.0));
 }
 
 /// X of S1 in passes of two: 50 to 450 and 950 to 450 mm: + + - -. X of S2 in one pass: + + + -.
@@ -109,11 +110,11 @@ TEST(Compare, PositionsAndRegions) {
 TEST(Compare, Directions) {
   Campaign campaign = small_campaign();
   const Comparison by_order = compare(campaign, small_records());
-  EXPECT_THAT(labels(by_order.find("direction of X")), ElementsAre("X+", "X-"));
-  EXPECT_THAT(chi2(by_order.find("direction of X")), ElementsAre(6.0, 10.0));
+  EXPECT_THAT(labels(by_order.find({By::Direction, AxisName::X})), ElementsAre("X+", "X-"));
+  EXPECT_THAT(chi2(by_order.find({By::Direction, AxisName::X})), ElementsAre(6.0, 10.0));
   campaign.setups[0].readings.direction[0] = {1, 1, 1, 1};
   const Comparison by_column = compare(campaign, small_records());
-  EXPECT_THAT(chi2(by_column.find("direction of X")), ElementsAre(15.0, 1.0));
+  EXPECT_THAT(chi2(by_column.find({By::Direction, AxisName::X})), ElementsAre(15.0, 1.0));
 }
 
 /// Lines, runs and times exist in S1 alone. Time in ten parts of 10 s: 0 s in the first, 10 s in the second,
@@ -121,11 +122,11 @@ TEST(Compare, Directions) {
 TEST(Compare, LinesRunsAndTime) {
   const Campaign campaign = small_campaign();
   const Comparison comparison = compare(campaign, small_records());
-  EXPECT_THAT(labels(comparison.find("line")), ElementsAre("S1 line 1", "S1 line 2"));
-  EXPECT_THAT(chi2(comparison.find("line")), ElementsAre(5.0, 9.0));
-  EXPECT_THAT(labels(comparison.find("run")), ElementsAre("run 1", "run 2"));
-  EXPECT_THAT(labels(comparison.find("time")), ElementsAre("0 to 10 s", "10 to 20 s", "90 to 100 s"));
-  EXPECT_THAT(chi2(comparison.find("time")), ElementsAre(1.0, 4.0, 9.0));
+  EXPECT_THAT(labels(comparison.find({By::Line})), ElementsAre("S1 line 1", "S1 line 2"));
+  EXPECT_THAT(chi2(comparison.find({By::Line})), ElementsAre(5.0, 9.0));
+  EXPECT_THAT(labels(comparison.find({By::Run})), ElementsAre("run 1", "run 2"));
+  EXPECT_THAT(labels(comparison.find({By::Time})), ElementsAre("0 to 10 s", "10 to 20 s", "90 to 100 s"));
+  EXPECT_THAT(chi2(comparison.find({By::Time})), ElementsAre(1.0, 4.0, 9.0));
 }
 
 TEST(Compare, WorstReadingsComeFirst) {
@@ -151,7 +152,7 @@ TEST(Compare, RemovedReadingsAreCountedListedAndLeftOutOfChi2) {
 TEST(Compare, SignificanceIsSharedOverAllCells) {
   const Campaign campaign = small_campaign();
   const Comparison calm = compare(campaign, small_records());
-  const ComparisonCell& setup = calm.find("setup")->cells[0];
+  const ComparisonCell& setup = calm.find({By::Setup})->cells[0];
   EXPECT_NEAR(setup.probability, 8.0 * std::exp(-7.0), 1e-9);
   std::size_t cells = 0;
   for (const Breakdown& breakdown : calm.breakdowns) cells += breakdown.cells.size();
@@ -161,7 +162,7 @@ TEST(Compare, SignificanceIsSharedOverAllCells) {
 
   auto records = small_records();
   for (auto& one : records) one.reading *= 10.0;
-  const ComparisonCell bad = compare(campaign, records).find("setup")->cells[0];
+  const ComparisonCell bad = compare(campaign, records).find({By::Setup})->cells[0];
   EXPECT_NEAR(bad.chi2, 1400.0, 1e-9);
   EXPECT_TRUE(bad.significant);
   EXPECT_FALSE(bad.stands_out);
@@ -178,8 +179,8 @@ TEST(Compare, OneBadSetupStandsOut) {
     for (std::size_t row = 0; row < 4; ++row) records.push_back(record(1, row, 1e-6, 1e-6));
   }
   const Comparison comparison = compare(campaign, records);
-  EXPECT_TRUE(comparison.find("setup")->cells[0].stands_out);
-  EXPECT_FALSE(comparison.find("setup")->cells[1].stands_out);
+  EXPECT_TRUE(comparison.find({By::Setup})->cells[0].stands_out);
+  EXPECT_FALSE(comparison.find({By::Setup})->cells[1].stands_out);
 }
 
 TEST(Compare, RedundancyIsTheExpectedChi2) {
@@ -195,16 +196,28 @@ TEST(Compare, AxesThatNeverMoveGetNoBreakdown) {
   Campaign campaign = small_campaign();
   for (volcal::Setup& setup : campaign.setups) setup.readings.position[1].assign(4, 0.2);
   const Comparison comparison = compare(campaign, small_records());
-  EXPECT_EQ(comparison.find("Y"), nullptr);
-  EXPECT_EQ(comparison.find("direction of Y"), nullptr);
-  EXPECT_NE(comparison.find("X"), nullptr);
+  EXPECT_EQ(comparison.find({By::Position, AxisName::Y}), nullptr);
+  EXPECT_EQ(comparison.find({By::Direction, AxisName::Y}), nullptr);
+  EXPECT_NE(comparison.find({By::Position, AxisName::X}), nullptr);
+}
+
+TEST(Grouping, IsNamedAsResultsWriteIt) {
+  EXPECT_EQ(Grouping{By::Setup}.name(), "setup");
+  EXPECT_EQ(Grouping{By::Instrument}.name(), "instrument");
+  EXPECT_EQ(Grouping{By::Tool}.name(), "tool");
+  EXPECT_EQ((Grouping{By::Position, AxisName::C}).name(), "C");
+  EXPECT_EQ((Grouping{By::Direction, AxisName::X}).name(), "direction of X");
+  EXPECT_EQ(Grouping{By::Region}.name(), "region");
+  EXPECT_EQ(Grouping{By::Line}.name(), "line");
+  EXPECT_EQ(Grouping{By::Run}.name(), "run");
+  EXPECT_EQ(Grouping{By::Time}.name(), "time");
 }
 
 /// S1: (1 + 4 - 3 + 0) / 4 = 0.5 um; S2: (0 + 1 + 0 - 2) / 4 = -0.25 urad; lengths of all: those of S1.
 TEST(Comparison, MeansKeepTheirSign) {
   const Campaign campaign = small_campaign();
   const Comparison comparison = compare(campaign, small_records());
-  const Breakdown* setups = comparison.find("setup");
+  const Breakdown* setups = comparison.find({By::Setup});
   ASSERT_EQ(setups->cells.size(), 2U);
   EXPECT_NEAR(setups->cells[0].lengths.mean, 0.5e-6, 1e-15);
   EXPECT_NEAR(setups->cells[1].angles.mean, -0.25e-6, 1e-15);

@@ -37,7 +37,7 @@ Json cell_json(const ComparisonCell& cell) {
 
 /// Worst of the last model first, of what is worse than chance.
 Json places_json(std::span<const ComparedModel> models) {
-  std::vector<std::pair<std::string, const ComparisonCell*>> places;
+  std::vector<std::pair<Grouping, const ComparisonCell*>> places;
   for (const Breakdown& breakdown : models.back().comparison.breakdowns) {
     for (const ComparisonCell& cell : breakdown.cells) {
       if (cell.significant) places.emplace_back(breakdown.by, &cell);
@@ -54,7 +54,7 @@ Json places_json(std::span<const ComparedModel> models) {
       const ComparisonCell* own = model.comparison.find_cell(by, cell->label);
       of_models.push_back(cell_json(own == nullptr ? ComparisonCell{} : *own));
     }
-    rows.push_back({{"by", by},
+    rows.push_back({{"by", by.name()},
                     {"where", cell->label},
                     {"observations", cell->observations},
                     {"models", std::move(of_models)}});

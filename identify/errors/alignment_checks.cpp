@@ -10,7 +10,6 @@
 #include "volcal/model/description/parallel_axes.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/registry.h"
-#include "volcal/model/effects/reversal_label.h"
 
 namespace volcal {
 namespace {
@@ -48,8 +47,8 @@ bool moves_origin(const Machine& machine, const Alignment& alignment) {
          });
 }
 
-/// Names of the blocks of surfaces and expressions. Their positions are those that the control commands, not
-/// counted from home: what they add at a pose is the same wherever the origin is.
+/// Names of the blocks of what adds the same at a pose wherever the origin is: constant reversals, and
+/// surfaces and expressions, whose positions are those that the control commands, not counted from home.
 std::set<std::string> without_origin(const FitResult& result) {
   std::set<std::string> names;
   for (const EffectSpec& spec : result.identified.effects) {
@@ -57,7 +56,7 @@ std::set<std::string> without_origin(const FitResult& result) {
     if (kind == nullptr) continue;
     const std::unique_ptr<Effect> effect = kind->make(spec, result.identified.file);
     if (effect->surface() != nullptr) names.insert(surface_name(*effect));
-    if (!effect->changes_with_any_driver()) continue;
+    if (!effect->changes_with_any_driver() && !effect->constant_reversal()) continue;
     for (const EffectAmplitude& amplitude : effect->amplitudes()) names.insert(amplitude.label);
     for (const EffectShape& shape : effect->shapes()) names.insert(shape.label);
   }
@@ -71,7 +70,7 @@ void check_parameters(const FitResult& result, bool origin_moves) {
     const bool refers_to_origin =
         block.kind == ParameterKind::Expansion ||
         ((block.kind == ParameterKind::Effect || block.kind == ParameterKind::EffectShape) &&
-         !reversal_symbol(block.name) && !carried.contains(block.name));
+         !carried.contains(block.name));
     if (refers_to_origin)
       throw InputError({}, block.name + " refers to the origin that the fit had",
                        "change home_mm in the machine file and fit again, or leave the origin where it is");

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -92,16 +93,12 @@ class DesignLayout {
     layout_.function_size = static_cast<int>(variances_.size());
   }
 
-  void add_block(ParameterKind kind, const std::string& name, double u) {
-    ParameterBlock block;
-    block.kind = kind;
-    block.name = name;
-    block.labels = {""};
-    block.offset = static_cast<int>(variances_.size());
-    block.guess = Eigen::VectorXd::Zero(1);
-    if (kind == ParameterKind::Location) block.location = LocationSymbol::parse(name);
-    layout_.blocks.push_back(std::move(block));
-    variances_.push_back(u * u);
+  void add_location(LocationSymbol symbol, double u) {
+    add_block(ParameterKind::Location, symbol.name(), u).location = symbol;
+  }
+
+  void add_expansion(AxisName axis, double u) {
+    add_block(ParameterKind::Expansion, expansion_parameter(axis), u);
   }
 
   void take(FitResult& result) {
@@ -113,6 +110,17 @@ class DesignLayout {
   }
 
  private:
+  ParameterBlock& add_block(ParameterKind kind, std::string name, double u) {
+    ParameterBlock block;
+    block.kind = kind;
+    block.name = std::move(name);
+    block.labels = {""};
+    block.offset = static_cast<int>(variances_.size());
+    block.guess = Eigen::VectorXd::Zero(1);
+    variances_.push_back(u * u);
+    return layout_.blocks.emplace_back(std::move(block));
+  }
+
   ParameterLayout layout_;
   std::vector<double> variances_;
 };
@@ -127,11 +135,10 @@ FitResult result_of_tolerances(const Machine& machine, const Tolerances& toleran
   for (const auto& [symbol, width] : tolerances.functions)
     layout.add_function(machine.axis(symbol.axis), symbol, width);
   for (const auto& [symbol, width] : tolerances.squareness)
-    layout.add_block(ParameterKind::Location, symbol.name(), band_uncertainty(width));
+    layout.add_location(symbol, band_uncertainty(width));
   for (const Axis& axis : machine.axes) {
     if (axis.expansion && axis.expansion->per_kelvin_sigma > 0.0)
-      layout.add_block(ParameterKind::Expansion, expansion_parameter(axis.name),
-                       axis.expansion->per_kelvin_sigma);
+      layout.add_expansion(axis.name, axis.expansion->per_kelvin_sigma);
   }
   layout.take(result);
   return result;

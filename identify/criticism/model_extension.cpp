@@ -25,22 +25,21 @@ void require_axis(const ModelToExtend& extended, AxisName axis, const ExtensionW
 }
 
 void give_back(const ModelToExtend& extended, const EffectSpec& spec, const ExtensionWords& words) {
-  const std::vector<std::string> symbols = left_out_symbols(spec);
-  for (const std::string& name : symbols) {
-    if (const auto symbol = ErrorSymbol::parse(name)) require_axis(extended, symbol->axis, words);
-    if (const auto symbol = LocationSymbol::parse(name)) require_axis(extended, symbol->axis, words);
+  const std::vector<MachineError> errors = errors_given_back(spec);
+  for (const MachineError& error : errors) {
+    if (const auto axis = error.axis()) require_axis(extended, *axis, words);
   }
   const bool lacks_one = std::ranges::any_of(
-      symbols, [&](const std::string& name) { return is_left_out(name, extended.model); });
+      errors, [&](const MachineError& error) { return is_left_out(error, extended.model); });
   if (!lacks_one) refuse_known(extended.model, 0, *spec.options.text("symbol"), words);
   restore_left_out(spec, extended.machine, extended.model);
 }
 
 /// Of an error left out alone and of several left out together one can be given back by the other.
 bool is_given_back(const EffectSpec& spec, const ModelSpec& model) {
-  return spec.kind == kLeftOut && std::ranges::none_of(left_out_symbols(spec), [&](const std::string& name) {
-           return is_left_out(name, model);
-         });
+  return spec.kind == kLeftOut &&
+         std::ranges::none_of(errors_given_back(spec),
+                              [&](const MachineError& error) { return is_left_out(error, model); });
 }
 
 }  // namespace

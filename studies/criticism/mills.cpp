@@ -186,8 +186,9 @@ void judge(const std::vector<EffectFinding>& accepted, const std::vector<std::st
     } else if (effect.name.kind != kLeftOut) {
       record.wrong_effects.push_back(effect.label);
     } else {
-      for (const std::string& symbol : left_out_symbols(effect.spec)) {
-        if (LocationSymbol::parse(symbol)) continue;
+      for (const MachineError& error : errors_given_back(effect.spec)) {
+        if (error.location()) continue;
+        const std::string symbol = error.name();
         (is_hidden(symbol) ? record.found : record.other_functions).push_back(symbol);
       }
     }

@@ -212,12 +212,12 @@ void state_order(Eigen::Index order, EffectSpec& spec) {
     spec.options.set(kHarmonics, static_cast<double>(order) / 2.0);
 }
 
-bool is_left_out(const std::string& symbol, const ModelSpec& model) {
-  if (const auto location = LocationSymbol::parse(symbol))
+bool is_left_out(const MachineError& error, const ModelSpec& model) {
+  if (const auto location = error.location())
     return std::ranges::find(model.locations_off, *location) != model.locations_off.end() ||
            (is_rotary(location->axis) && model.default_function.basis == kHeldAtZero &&
             !model.locations.contains(*location));
-  const auto function = ErrorSymbol::parse(symbol);
+  const auto function = error.motion();
   return function && model.function(*function).basis == kHeldAtZero;
 }
 
@@ -241,13 +241,13 @@ void restore(ErrorSymbol symbol, const EffectSpec& spec, const Machine& machine,
 
 bool restore_left_out(const EffectSpec& spec, const Machine& machine, ModelSpec& model) {
   if (spec.kind != kLeftOut) return false;
-  for (const std::string& name : left_out_symbols(spec)) {
-    if (const auto location = LocationSymbol::parse(name)) {
+  for (const MachineError& error : errors_given_back(spec)) {
+    if (const auto location = error.location()) {
       std::erase(model.locations_off, *location);
       if (is_rotary(location->axis)) model.locations.try_emplace(*location, 0.0);
     }
-    const auto symbol = ErrorSymbol::parse(name);
-    if (symbol && is_left_out(name, model)) restore(*symbol, spec, machine, model);
+    const auto symbol = error.motion();
+    if (symbol && is_left_out(error, model)) restore(*symbol, spec, machine, model);
   }
   return true;
 }

@@ -26,8 +26,8 @@ std::vector<LeftOutError> left_out_errors(const MeasurementModel& model);
 /// where that is fewer than were looked for.
 void state_order(Eigen::Index order, EffectSpec& spec);
 
-/// Whether the model holds this function or location error ("EAX", "EC0Y") at zero.
-bool is_left_out(const std::string& symbol, const ModelSpec& model);
+/// Whether the model holds this error motion or location error at zero.
+bool is_left_out(const MachineError& error, const ModelSpec& model);
 
 /// Gives what `spec` names, and the model leaves out, back to the model; false when it is an effect of the
 /// catalogue.

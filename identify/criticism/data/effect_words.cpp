@@ -120,8 +120,11 @@ std::string full_name(const EffectName& name) {
 
 std::span<const ModelChange> model_change_kinds() { return kModelChanges; }
 
-std::vector<std::string> left_out_symbols(const EffectSpec& spec) {
-  return words_in(spec.options.text("symbol").value_or(""));
+std::vector<MachineError> errors_given_back(const EffectSpec& spec) {
+  std::vector<MachineError> errors;
+  for (const std::string& word : words_in(spec.options.text("symbol").value_or("")))
+    errors.push_back(MachineError::parse(word));
+  return errors;
 }
 
 EffectName resolution_name(ErrorSymbol symbol) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "volcal/identify/criticism/data/scan_direction.h"
+#include "volcal/model/description/machine_error.h"
 #include "volcal/model/description/schema.h"
 #include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect.h"
@@ -39,8 +40,8 @@ struct ModelChange {
 std::span<const ModelChange> model_change_kinds();
 /// The kind of an error that the model file switches off (left_out.h).
 inline constexpr const char* kLeftOut = "left-out";
-/// The symbols that the specification of such an error names: "EAX", "EC0Y".
-std::vector<std::string> left_out_symbols(const EffectSpec& spec);
+/// The error motions and location errors that the specification of such an error names.
+std::vector<MachineError> errors_given_back(const EffectSpec& spec);
 /// Name of more knots for an error function: resolution:EXX:x:finer.
 EffectName resolution_name(ErrorSymbol symbol);
 

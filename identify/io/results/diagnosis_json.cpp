@@ -66,7 +66,7 @@ Json effect_json(const EffectFinding& effect) {
   json["dof"] = effect.dof;
   if (!effect.shape_text.empty()) json["shape_value"] = effect.shape_text;
   if (effect.spec.kind == kLeftOut) {
-    json["left_out"] = left_out_symbols(effect.spec);
+    json["left_out"] = names_of(errors_given_back(effect.spec));
     json["spec"] = json_parts::effect(effect.spec);
   } else if (!effect.resolution) {
     json["model_toml"] = effect_toml(effect.spec);

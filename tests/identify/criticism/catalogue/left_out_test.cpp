@@ -61,7 +61,7 @@ TEST(LeftOut, IsNamedAndGivenBack) {
   const EffectFinding& found = diagnosis.effects.front();
   EXPECT_EQ(found.name, (EffectName{"left-out", "EBX", "x", "function"}));
   EXPECT_LT(found.log10_p, -20.0);
-  EXPECT_EQ(left_out_symbols(found.spec), (std::vector<std::string>{"EBX"}));
+  EXPECT_EQ(names_of(errors_given_back(found.spec)), (std::vector<std::string>{"EBX"}));
   ModelSpec extended = model;
   ASSERT_TRUE(restore_left_out(found.spec, campaign_of_tracking().machine, extended));
   EXPECT_TRUE(extended.functions.empty());

@@ -13,6 +13,7 @@
 #include "volcal/model/effects/kinds/open/empirical.h"
 #include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/effects/written_target.h"
 
 namespace volcal {
 namespace {
@@ -143,6 +144,19 @@ EffectSpec written_surface(const std::string& option, const std::string& text) {
   return spec;
 }
 
+namespace {
+
+bool is_target(const EffectSpec& spec) {
+  try {
+    written_target(EffectTable(spec, {}));
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
 WrittenEffect written_effect(const std::string& option, const std::string& text,
                              const std::vector<std::string>& parameters) {
   const auto [target, expression] = parted(option, text);
@@ -158,8 +172,8 @@ WrittenEffect written_effect(const std::string& option, const std::string& text,
   try {
     effect.made = find_effect(effect.spec.kind)->make(effect.spec, {});
   } catch (const InputError& error) {
-    const bool of_target = error.problem().find("is no target") != std::string::npos;
-    refuse_effect(option, text, (of_target ? target.at : expression.at) + 1, error.problem(), error.remedy());
+    refuse_effect(option, text, (is_target(effect.spec) ? expression.at : target.at) + 1, error.problem(),
+                  error.remedy());
   }
   return effect;
 }

@@ -97,7 +97,7 @@ void write_campaign_folder(const Campaign& campaign, const std::filesystem::path
 }
 
 std::vector<SetupOf> setups_of(const std::shared_ptr<Campaign>& campaign) {
-  if (campaign == nullptr) throw py::type_error("None is no Campaign");
+  if (campaign == nullptr) throw py::type_error("None is not a Campaign");
   std::vector<SetupOf> setups;
   for (std::size_t i = 0; i < campaign->setups.size(); ++i) setups.push_back({campaign, i});
   return setups;

@@ -42,7 +42,7 @@ NcSetup setup_of(const Machine& machine, const std::map<std::string, Point_mm>& 
   for (const auto& [name, point] : work_offsets) {
     const auto index = work_offset_index(name);
     if (!index)
-      throw InputError({}, "work_offsets: " + name + " is no work offset",
+      throw InputError({}, "work_offsets: " + name + " is not a work offset",
                        "there are G54 to G59, G59.1 to G59.3");
     setup.work_offsets[*index] = in_metres("work_offsets " + name, point);
   }

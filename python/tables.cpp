@@ -139,7 +139,7 @@ void define_tables(py::module_& module) {
           "On what the format was verified.")
       .def_property_readonly(
           "effects_left_out", [](const MadeTables& made) { return findings_of(made.effects_left_out); },
-          "What was identified and is in no table.")
+          "What was identified but is in none of the tables.")
       .def_property_readonly(
           "cautions", [](const MadeTables& made) { return findings_of(made.cautions); },
           "What else there is to know before they are loaded.")

@@ -53,7 +53,7 @@ std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const Effect
   ModelSpec& model = extended.model;
   const EffectKind* kind = find_effect(spec.kind);
   if (kind == nullptr) {
-    throw InputError(words.place, words.label + " is of no kind of effect of this program",
+    throw InputError(words.place, words.label + " is of a kind of effect that this program does not know",
                      "volcal diagnose --list prints all kinds");
   }
   std::unique_ptr<Effect> effect = kind->make(spec, words.place.file);

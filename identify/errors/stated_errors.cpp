@@ -141,7 +141,7 @@ void require_stated_errors(const ModelSpec& model) {
   for (const EffectSpec& spec : effects_without_amplitude(model)) {
     const std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, model.file);
     throw InputError({model.file, spec.source_line},
-                     "effect \"" + spec.kind + "\": it states no amplitude and would count as nothing",
+                     "effect \"" + spec.kind + "\": it states no amplitude and would be taken as zero",
                      "add " + effect->amplitudes().front().key +
                          " = ..., or give the identified.toml of a result, which has what was fitted");
   }

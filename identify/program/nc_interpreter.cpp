@@ -123,9 +123,9 @@ int NcInterpreter::wanted_motion() const {
     return kNoCode;
   }
   if (commands.motion == kCancel && axes)
-    place().refuse("coordinates stand beside G80", "write them in a block after it");
+    place().refuse("coordinates in the block of G80", "write them in a block after it");
   if (commands.non_modal == 40 && axes)
-    place().refuse("coordinates stand beside G4; controls differ in what they mean",
+    place().refuse("coordinates in the block of G4; controls differ in what they mean",
                    "write them in two blocks");
   if (axes || arc) return commands.motion == kNoCode ? state_.motion : commands.motion;
   if (is_arc(commands.motion) || is_cycle(commands.motion))

@@ -512,7 +512,7 @@ void TcpRewriter::rewrite(std::string_view line, const Sink& sink) {
       follow_settings(words, block);
       if (words.on) begin_mode(words);
       if (tcp_ != nullptr && words.moves()) {
-        if (words.off) place().refuse("coordinates stand beside G49", "write them in a block after it");
+        if (words.off) place().refuse("coordinates in the block of G49", "write them in a block after it");
         move(words, block);
       } else {
         if (words.moves()) rapid_outside(words);

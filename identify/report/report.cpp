@@ -142,7 +142,7 @@ ReportPicture diagnosis_picture(const Diagnosis& diagnosis, const Campaign& camp
 ReportPicture tables_picture(const FitResult& result, const MadeTables& made, const ReportOptions& options) {
   if (!made.rotary_check)
     throw InputError(
-        {}, made.options.type.name() + " has nothing of rotary axes, whose tables are pictured",
+        {}, made.options.type.name() + " has no tables of rotary axes, and the picture shows those",
         "name a type of rotary axes such as R-VOL; the report of volcal fit pictures linear axes");
   constexpr int kTablesWidth = 1240, kHeightOfAxis = 300, kHeightOfMaps = 900, kHeightOfWords = 210;
   const std::string json =

@@ -48,12 +48,12 @@ std::size_t whole_number(const std::string& text, const std::string& what) {
   std::size_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || text.empty())
-    refuse_command("\"" + text + "\" is no " + what, "give a whole number");
+    refuse_command("\"" + text + "\" is not the number of " + what, "give a whole number");
   return value;
 }
 
 std::size_t place_from_one(const std::string& text) {
-  const std::size_t number = whole_number(text, "finding");
+  const std::size_t number = whole_number(text, "a finding");
   if (number == 0) refuse_command("findings are counted from 1", "draw 1");
   return number - 1;
 }
@@ -66,11 +66,11 @@ std::vector<std::size_t> observations_from(const std::string& text) {
     const std::size_t end = std::min(text.find(',', at), text.size());
     const std::string part = text.substr(at, end - at);
     const std::size_t dash = part.find('-');
-    const std::size_t from = whole_number(part.substr(0, dash), "observation");
+    const std::size_t from = whole_number(part.substr(0, dash), "an observation");
     const std::size_t to =
-        dash == std::string::npos ? from : whole_number(part.substr(dash + 1), "observation");
+        dash == std::string::npos ? from : whole_number(part.substr(dash + 1), "an observation");
     if (to < from || to > kMost)
-      refuse_command("\"" + part + "\" is no range of observations", "write 12-15");
+      refuse_command("\"" + part + "\" is not a range of observations", "write 12-15");
     for (std::size_t each = from; each <= to; ++each) observations.push_back(each);
     at = end + 1;
   }
@@ -106,7 +106,7 @@ void set_formula(const std::string& text, SessionCommand& command) {
 void set_left_out(const std::string& text, SessionCommand& command) {
   const auto [observations, reason] = first_word(text);
   if (reason.empty())
-    refuse_command("it is not said why readings are left out", "leave-out 12-15 cable moved");
+    refuse_command("the reason for leaving out the readings is missing", "leave-out 12-15 cable moved");
   command.observations = observations_from(observations);
   command.reason = reason;
 }
@@ -123,11 +123,11 @@ void set_rest(const std::string& rest, SessionCommand& command) {
     case Verb::LeaveOut:
       return set_left_out(rest, command);
     case Verb::Go:
-      command.number = whole_number(rest, "model");
+      command.number = whole_number(rest, "a model");
       return;
     case Verb::Refit:
     case Verb::Confirm:
-      if (!rest.empty()) command.number = whole_number(rest, "model");
+      if (!rest.empty()) command.number = whole_number(rest, "a model");
       return;
     case Verb::Draw:
       command.number = rest.empty() ? 0 : place_from_one(rest);
@@ -239,7 +239,7 @@ EffectName effect_name_from(const std::string& text) {
   for (int i = 0; i < 4; ++i) {
     const std::size_t end = i < 3 ? text.find(':', at) : text.size();
     if (end == std::string::npos || end == at)
-      refuse_command("\"" + text + "\" is no name of an effect", "write KIND:TARGET:DRIVER:SHAPE");
+      refuse_command("\"" + text + "\" is not the name of an effect", "write KIND:TARGET:DRIVER:SHAPE");
     part[i] = text.substr(at, end - at);
     at = end + 1;
   }
@@ -249,7 +249,7 @@ EffectName effect_name_from(const std::string& text) {
 SessionCommand session_command_from(const std::string& line) {
   const auto [word, rest] = first_word(line);
   const auto known = std::ranges::find(kVerbs, word, &VerbWord::word);
-  if (known == std::end(kVerbs)) refuse_command("\"" + word + "\" is no command of a session");
+  if (known == std::end(kVerbs)) refuse_command("\"" + word + "\" is not a command of a session");
   SessionCommand command;
   command.verb = known->verb;
   set_rest(rest, command);

@@ -105,7 +105,7 @@ Eigen::VectorXd Session::driver(const EffectName& effect) {
 
 EffectPreview Session::formula(const EffectSpec& custom) {
   const EffectKind* kind = find_effect(custom.kind);
-  if (kind == nullptr) throw std::invalid_argument(custom.kind + " is no kind of effect");
+  if (kind == nullptr) throw std::invalid_argument(custom.kind + " is not a kind of effect");
   const auto effect = kind->make(custom, {});
   const EffectName name = effect->name();
   effect->check(campaign(), {});

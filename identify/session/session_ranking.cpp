@@ -98,7 +98,7 @@ const FamilyTest& Session::test_of(const EffectName& effect) {
     const Family& family = node().state().setting().families[all[i].family];
     if (family.effect && family.name() == effect && !node().state().has(all[i].family)) return all[i];
   }
-  throw std::invalid_argument(full_name(effect) + " is no effect that can be added to this model");
+  throw std::invalid_argument(full_name(effect) + " is not an effect that can be added to this model");
 }
 
 /// What shows and is not in the model, best first.

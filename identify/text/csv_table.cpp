@@ -393,7 +393,8 @@ CsvColumns CsvTable::numbers_in_memory(std::span<const std::size_t> columns) con
     if (wrong != column.values.end()) {
       throw InputError(
           {file_, static_cast<int>(lines_.at(static_cast<std::size_t>(wrong - column.values.begin())))},
-          "column " + printable(column.name) + " holds \"" + std::to_string(*wrong) + "\", no finite number",
+          "column " + printable(column.name) + " holds \"" + std::to_string(*wrong) +
+              "\", not a finite number",
           "leave out rows without a reading");
     }
     read.values.emplace_back(column.values.begin(), column.values.end());

@@ -81,7 +81,7 @@ void require_shallow(const std::string& text, NestedText kind, const std::string
       const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
       throw InputError({file, static_cast<int>(line)},
                        "values are nested deeper than " + std::to_string(kDeepest) + " levels",
-                       "no file of volcal is; is it the right one?");
+                       "check that this is the right file: no file of volcal is nested so deep");
     }
   }
 }

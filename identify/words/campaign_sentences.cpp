@@ -118,12 +118,11 @@ std::string angles_in_radians(const Finding& finding) {
   std::vector<std::string> entries;
   for (const std::string& column : columns)
     entries.push_back(fmt::format("{} = {:.12g}", column, kDegreePerRadian));
-  return in_setup(finding) +
-         fmt::format(
-             "{} {} whole degrees if {} in radians, and no round numbers of degrees: if so add scale = "
-             "{{ {} }}",
-             join_names(columns), columns.size() == 1 ? "holds" : "hold",
-             columns.size() == 1 ? "it is" : "they are", join_names(entries));
+  return in_setup(finding) + fmt::format(
+                                 "{} {} values that are not round in degrees but are whole degrees if {} in "
+                                 "radians: if so add scale = {{ {} }}",
+                                 join_names(columns), columns.size() == 1 ? "holds" : "hold",
+                                 columns.size() == 1 ? "it is" : "they are", join_names(entries));
 }
 
 std::string misread(const Finding& finding) {

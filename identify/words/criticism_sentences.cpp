@@ -55,7 +55,7 @@ std::string unnamed(const Finding& finding) {
 }
 
 std::string unknown(const Finding& finding) {
-  return "An effect that is in no catalogue: " + unnamed(finding);
+  return "An effect that is not in the catalogue: " + unnamed(finding);
 }
 
 std::string more_unknown(const Finding& finding) { return "More remains: " + unnamed(finding); }
@@ -134,7 +134,7 @@ std::string tried(const Finding& finding) {
   if (!finding.flag("visible")) return effect + "these readings do not see it.";
   const std::string became = finding.flag("added")         ? "it is what was missing"
                              : finding.flag("alternative") ? "it is one of those that explain the readings"
-                                                           : "the readings do not ask for it";
+                                                           : "the readings do not support it";
   std::string text =
       fmt::format("{}{} (log10 p {:.1f} with all {} tests counted, gain {:.3g})", effect, became,
                   finding.number("log10_p").si, finding.count("tests"), finding.number("gain").si);

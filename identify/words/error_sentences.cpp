@@ -55,7 +55,7 @@ std::string errors_of_tables(const Finding& finding) {
   std::string text = "these errors are those of tables";
   if (!made_for.empty()) text += fmt::format(" for {}", fmt::join(made_for, ", "));
   if (!shared.empty())
-    text += fmt::format("; of {} they hold what is nearest to it in a rigid body with that tool",
+    text += fmt::format("; for {} they hold the nearest errors of a rigid body with that tool",
                         fmt::join(shared, ", "));
   if (!left_out.empty())
     text += fmt::format("; {} {} in none of them", fmt::join(left_out, ", "),
@@ -65,7 +65,7 @@ std::string errors_of_tables(const Finding& finding) {
 
 std::string tables_of_other_tool(const Finding& finding) {
   return fmt::format(
-      "the tables were made for tool {}: of tool {} they do not hold the effects that differ between tools",
+      "the tables were made for tool {}: for tool {} they lack the effects that differ between tools",
       finding.text("tables_tool"), finding.text("tool"));
 }
 
@@ -77,22 +77,24 @@ std::string tables_of_other_conditions(const Finding& finding) {
 
 std::string effect_in_no_figure(const Finding& finding) {
   return finding.text("effect") +
-         " was identified and is in none of these figures: it acts along a path or in one setup";
+         " was identified but is in none of these figures: it acts along a path or in one setup";
 }
 
 std::string effect_in_no_table(const Finding& finding) {
-  return finding.text("effect") + " was identified and is in no table: it acts along a path or in one setup";
+  return finding.text("effect") +
+         " was identified but is in none of the tables: it acts along a path or in one setup";
 }
 
 std::string rotary_in_no_table(const Finding& finding) {
   const std::string& axis = finding.text("axis");
   return fmt::format(
-      "errors of axis {} were identified and are in no table: tables are for linear axes with {} at 0", axis,
-      axis);
+      "errors of axis {} were identified but are in none of the tables: tables are for linear axes with {} "
+      "at 0",
+      axis, axis);
 }
 
 std::string rotary_partly_in_tables(const Finding& finding) {
-  return fmt::format("of the errors of axis {} the tables hold {} alone", finding.text("axis"),
+  return fmt::format("the tables hold only {1} of the errors of axis {0}", finding.text("axis"),
                      finding.text("type"));
 }
 
@@ -133,9 +135,8 @@ std::string rotary_tables_off_ideal(const Finding& finding) {
         finding.number("off").in_unit());
   return fmt::format(
       "tables of rotary axes are up to {:.2f} um off what their types could correct: what changes within one "
-      "of their steps, as the errors of a worm, needs a finer --rotary-step; what depends on two axes at "
-      "once "
-      "is in grids of rotary axes alone",
+      "of their steps, such as the errors of a worm, needs a finer --rotary-step; what depends on two axes "
+      "at once is in grids of rotary axes alone",
       finding.number("off").in_unit());
 }
 
@@ -181,8 +182,8 @@ std::string rotary_not_in_model(const Finding& finding) {
 std::string harmonics_hidden(const Finding& finding) {
   const std::string& axis = finding.text("axis");
   return fmt::format(
-      "axis {} stood at {} positions, on a grid of {:.4g} deg: waves of more than {} a turn look "
-      "there like longer ones and are in no error motion; add positions of {} off that grid",
+      "axis {} stood at {} positions, on a grid of {:.4g} deg: waves of more than {} a turn look there like "
+      "longer ones and are in none of the error motions; add positions of {} off that grid",
       axis, finding.count("positions"), finding.number("spacing").in_unit(), finding.count("told"), axis);
 }
 

@@ -118,7 +118,7 @@ std::string remedy_in_words(const std::string& remedy, const Finding& finding) {
   if (remedy == "linear-axes")
     return "measure the linear axes, too, with the rotary axes at 0 (tracer, straightness, square): without "
            "that, their errors while they follow a rotary axis cannot be separated from those of that axis";
-  if (remedy == "spheres") return "measure at three places on the table that lie on no line";
+  if (remedy == "spheres") return "measure at three places on the table that do not lie on one line";
   if (remedy == "mandrel")
     return "add a mandrel whose tip lies 60 mm or more to the side of the spindle's axis";
   if (remedy == "other-lines")

@@ -67,7 +67,9 @@ std::string rotary_axis_moves(const Finding& finding) {
 
 std::string no_axis_moves(const Finding& finding) { return place_of_test(finding) + "no axis moves"; }
 
-std::string not_two_axes_move(const Finding& finding) { return place_of_test(finding) + "not two axes move"; }
+std::string not_two_axes_move(const Finding& finding) {
+  return place_of_test(finding) + "the number of axes that move is not two";
+}
 
 std::string no_circle(const Finding& finding) {
   return place_of_test(finding) + "the commanded points do not lie on a circle";

@@ -31,10 +31,11 @@ std::vector<std::string> texts_of(const Json& body, const char* key) {
   std::vector<std::string> texts;
   if (!body.contains(key)) return texts;
   if (!body[key].is_array())
-    throw Refusal(400, std::string("\"") + key + "\" is no list", "load the page again");
+    throw Refusal(400, std::string("\"") + key + "\" is not a list", "load the page again");
   for (const Json& each : body[key]) {
     if (!each.is_string())
-      throw Refusal(400, std::string("\"") + key + "\" holds no texts", "load the page again");
+      throw Refusal(400, std::string("\"") + key + "\" holds something that is not a text",
+                    "load the page again");
     texts.push_back(each.get<std::string>());
   }
   return texts;
@@ -61,7 +62,8 @@ std::vector<std::size_t> marked_observations(const Json& body) {
     throw Refusal(400, "no readings are marked", "mark some in a picture");
   std::vector<std::size_t> observations;
   for (const Json& each : body["observations"]) {
-    if (!each.is_number_unsigned()) throw Refusal(400, "an observation is no number", "load the page again");
+    if (!each.is_number_unsigned())
+      throw Refusal(400, "an observation is not a number", "load the page again");
     observations.push_back(each.get<std::size_t>());
   }
   std::ranges::sort(observations);
@@ -72,7 +74,7 @@ SessionCommand leaving_out(const Json& body) {
   SessionCommand command{.verb = Verb::LeaveOut, .observations = marked_observations(body)};
   command.reason = text_of(body, "reason");
   if (command.reason.find_first_not_of(' ') == std::string::npos)
-    throw Refusal(400, "it is not said why readings are left out", "give a reason");
+    throw Refusal(400, "the reason for leaving out the readings is missing", "give a reason");
   std::ranges::replace(command.reason, '\n', ' ');
   return command;
 }
@@ -232,7 +234,7 @@ const std::vector<Workbench::Request>& Workbench::Request::all() {
 const Workbench::Request& Workbench::Request::of(const std::string& name) {
   const auto known = std::ranges::find(all(), name, &Request::name);
   if (known == all().end())
-    throw Refusal(404, "\"" + name + "\" is no request of the workbench", "load the page again");
+    throw Refusal(404, "\"" + name + "\" is not a request of the workbench", "load the page again");
   return *known;
 }
 
@@ -257,7 +259,7 @@ Answer Workbench::answer(const std::string& name, const std::string& body, const
   } catch (const std::invalid_argument& error) {
     return refused(422, error_json(error.what(), "choose what the current model lets you choose"));
   } catch (const Json::exception&) {
-    return refused(400, error_json("the request is no JSON of its kind", "load the page again"));
+    return refused(400, error_json("the request is not JSON of the expected form", "load the page again"));
   } catch (const std::exception& error) {
     return refused(500, error_json(error.what(), "undo the last step, or start the program again"));
   }

@@ -44,7 +44,7 @@ struct Variable {
   std::string written() const;
   /// Of a name or of what is written; absent where the text is neither.
   static std::optional<Variable> parse(std::string_view text);
-  /// Of what users may write; absent where the text is no variable of expressions.
+  /// Of what users may write; absent where the text is not a variable of expressions.
   static std::optional<Variable> parse_written(std::string_view text);
 
   /// Column of files of readings: "x_mm", "dir_x", "time_s", "T_air_degC", "feed_mm_min", "run"; of what is

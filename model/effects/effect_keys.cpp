@@ -36,7 +36,7 @@ ErrorSymbol EffectTable::symbol() const {
   const std::string name = text("symbol", "add symbol = \"EXX\"");
   const auto symbol = ErrorSymbol::parse(name);
   if (!symbol) {
-    fail("\"" + name + "\" is no error motion",
+    fail("\"" + name + "\" is not an error motion",
          "write E, the component X Y Z A B C, the moving axis, as in EXX or ECX");
   }
   return *symbol;
@@ -45,7 +45,7 @@ ErrorSymbol EffectTable::symbol() const {
 AxisName EffectTable::axis(const std::string& key) const {
   const std::string name = text(key, "add " + key + " = \"Z\"");
   const auto axis = name.size() == 1 ? axis_from_letter(name[0]) : std::nullopt;
-  if (!axis) fail("\"" + name + "\" is no axis", "write one of X Y Z A B C");
+  if (!axis) fail("\"" + name + "\" is not an axis", "write one of X Y Z A B C");
   return *axis;
 }
 

@@ -96,7 +96,7 @@ std::optional<Eigen::VectorXd> recorded_variable(const SetupView& view, const Va
     case Kind::Station:
       break;
   }
-  throw std::invalid_argument(variable.name() + " is no variable of expressions");
+  throw std::invalid_argument(variable.name() + " is not a variable of expressions");
 }
 
 bool has_variable(const Setup& setup, const Variable& variable) {

@@ -40,7 +40,7 @@ std::vector<AxisName> shared_axes(const EffectTable& table) {
   std::vector<AxisName> axes;
   for (const std::string& word : words_of(table, "axes", kRemedy)) {
     const auto axis = word.size() == 1 ? axis_from_letter(word[0]) : std::nullopt;
-    if (!axis || is_rotary(*axis)) table.fail("\"" + word + "\" is no linear axis", kRemedy);
+    if (!axis || is_rotary(*axis)) table.fail("\"" + word + "\" is not a linear axis", kRemedy);
     axes.push_back(*axis);
   }
   return axes;
@@ -51,7 +51,7 @@ std::vector<ErrorSymbol> shared_symbols(const EffectTable& table) {
   std::vector<ErrorSymbol> symbols;
   for (const std::string& word : words_of(table, "symbols", kRemedy)) {
     const auto symbol = ErrorSymbol::parse(word);
-    if (!symbol) table.fail("\"" + word + "\" is no error motion", kRemedy);
+    if (!symbol) table.fail("\"" + word + "\" is not an error motion", kRemedy);
     symbols.push_back(*symbol);
     if (is_rotation(symbol->component) != is_rotation(symbols.front().component))
       table.fail("one amplitude is not both a displacement and a rotation", "name motions of one unit");

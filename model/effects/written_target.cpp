@@ -80,7 +80,7 @@ WrittenTarget written_target(const EffectTable& table) {
   } else {
     target = reading_target(text);
   }
-  if (!target) table.fail("\"" + text + "\" is no target", kTargets);
+  if (!target) table.fail("\"" + text + "\" is not a target", kTargets);
   target->text = text;
   return *target;
 }

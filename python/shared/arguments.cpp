@@ -73,7 +73,7 @@ void require_not_negative(const std::string& argument, double value) {
 
 std::string text_key(const py::handle& key, const std::string& of) {
   if (py::isinstance<py::str>(key)) return key.cast<std::string>();
-  throw InputError({}, of + ": the key " + py::repr(key).cast<std::string>() + " is no text",
+  throw InputError({}, of + ": the key " + py::repr(key).cast<std::string>() + " is not a text",
                    "give names as texts");
 }
 

@@ -88,7 +88,7 @@ class Resolver {
       amplitude = next;
       rms = next_rms;
     }
-    fail(effect, "no amplitude has this effect on the readings", "state another rms_um, or an amplitude");
+    fail(effect, "no amplitude gives this rms in the readings", "state another rms_um, or an amplitude");
   }
 
   [[noreturn]] static void fail(const HiddenEffect& effect, const std::string& problem,

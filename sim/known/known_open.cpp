@@ -25,7 +25,8 @@ StateNumber value_of(const HiddenSettings& settings, const Variable& variable) {
   const double unit = variable.unit().si_per_unit;
   const Machine& machine = settings.machine();
   if (variable.has_axis() && !machine.has_axis(variable.axis))
-    settings.fail(variable.written() + " is of no axis of this machine", "name one of its axes");
+    settings.fail(variable.written() + " is of an axis that this machine does not have",
+                  "name one of its axes");
   switch (variable.kind) {
     case Variable::Kind::Position:
       return

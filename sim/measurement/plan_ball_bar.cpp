@@ -146,7 +146,7 @@ class BallBarPlanner {
       return std::to_string(static_cast<int>(std::lround(length / kMetrePerMillimetre)));
     };
     refuse("has positions from " + in_mm(shortest) + " to " + in_mm(longest) +
-               " mm from its centre ball, which no bar follows",
+               " mm from its centre ball, which is not within the stroke of a bar",
            "give positions on a circle or sphere about centre_mm, for the tool's functional point");
   }
 
@@ -176,7 +176,7 @@ std::vector<SetupPlan> plan_ball_bar_poses(const BallBarPoses& settings, const P
   if (!(settings.length > 0.0)) context.fail("the bar has no length", "give length_mm, such as 100");
   for (const std::string& direction : settings.directions) {
     if (direction != "x" && direction != "y" && direction != "z")
-      context.fail("\"" + direction + "\" is no direction of a bar", "list some of \"x\", \"y\", \"z\"");
+      context.fail("\"" + direction + "\" is not a direction of a bar", "list some of \"x\", \"y\", \"z\"");
   }
   const BallBarPlanner planner(settings.bar, context);
   std::vector<SetupPlan> plans;

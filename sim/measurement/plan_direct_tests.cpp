@@ -39,7 +39,7 @@ std::vector<AxisName> rotary_axes_of(const AxisOfRotation& settings, const PlanC
   for (const AxisName axis : axes) {
     context.require_axis(axis);
     if (!is_rotary(axis))
-      context.fail(std::string("axis ") + letter_of(axis) + " turns nothing", "name A, B or C");
+      context.fail(std::string("axis ") + letter_of(axis) + " is not a rotary axis", "name A, B or C");
   }
   return axes;
 }
@@ -159,7 +159,7 @@ std::vector<SetupPlan> plan_axis_of_rotation(const AxisOfRotation& settings, con
 std::vector<SetupPlan> plan_drift_at_rest(const DriftAtRest& settings, const PlanContext& context) {
   if (settings.duration < kLeastDuration || settings.seconds_per_reading <= 0.0 ||
       settings.seconds_per_reading > settings.duration)
-    context.fail("a drift is read over no time", "give duration_s, and a reading_s that is shorter");
+    context.fail("the test of drift has no duration", "give duration_s, and a reading_s that is shorter");
   const auto count = static_cast<std::size_t>(settings.duration / settings.seconds_per_reading + 1e-9) + 1;
   std::vector<SetupPlan> plans;
   for (const std::size_t tool : tools_named(settings.tools, context)) {

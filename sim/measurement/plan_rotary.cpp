@@ -96,7 +96,7 @@ std::vector<Eigen::Vector3d> sides_of(const std::string& kind, const PlanContext
   if (kind == "W") return {Eigen::Vector3d::UnitZ()};
   if (kind == "U") return {Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitX()};
   if (kind == "V") return {Eigen::Vector3d::UnitY(), -Eigen::Vector3d::UnitY()};
-  context.fail("\"" + kind + "\" is no kind of contact",
+  context.fail("\"" + kind + "\" is not a kind of contact",
                "list some of \"W\" (along the tool), \"U\" and \"V\" (across it)");
 }
 
@@ -222,7 +222,7 @@ void require_rotary_axes(const PlanContext& context) {
 
 void check_frame(const std::string& frame, const PlanContext& context) {
   if (frame == "workpiece" || frame == "tool" || frame == "machine") return;
-  context.fail("\"" + frame + "\" is no frame", "use workpiece, tool or machine");
+  context.fail("\"" + frame + "\" is not a frame", "use workpiece, tool or machine");
 }
 
 void check_poses(const RotaryPoses& poses, const PlanContext& context) {
@@ -236,7 +236,7 @@ void check_poses(const RotaryPoses& poses, const PlanContext& context) {
   }
   const auto check_axis = [&](AxisName axis) {
     if (is_rotary(axis) && context.machine.has_axis(axis)) return;
-    context.fail(std::string(1, letter_of(axis)) + " is no rotary axis of the machine",
+    context.fail(std::string(1, letter_of(axis)) + " is not a rotary axis of the machine",
                  "name A, B or C as the structure has them");
   };
   for (const auto& [axis, count] : poses.grid.points) {

@@ -181,7 +181,7 @@ Eigen::Matrix3d axes_of_frame(const TruthMachine& machine, const MachineState& s
   if (frame == "workpiece") return Eigen::Matrix3d::Identity();
   if (frame == "tool") return machine.nominal_tool_axes(state);
   if (frame == "machine") return machine.nominal_bed_axes(state);
-  throw std::invalid_argument("\"" + frame + "\" is no frame of readings");
+  throw std::invalid_argument("\"" + frame + "\" is not a frame of readings");
 }
 
 Eigen::Vector3d rotary_direction_w(const TruthMachine& nominal, const CommandedPoint& point, AxisName axis) {

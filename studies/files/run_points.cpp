@@ -67,9 +67,10 @@ std::vector<sim::CommandedPoint> run_points_of(const CsvTable& table) {
   for (std::size_t row = 0; row < points.size(); ++row) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (columns[c].store(points[row], numbers.values[c][row])) continue;
-      throw InputError({table.file(), static_cast<int>(numbers.source_line[row])},
-                       "column " + columns[c].name + " holds a value that no position, direction or line has",
-                       "positions in mm and deg, directions -1, 0 or 1, lines and runs whole numbers");
+      throw InputError(
+          {table.file(), static_cast<int>(numbers.source_line[row])},
+          "column " + columns[c].name + " holds a value that is not a position, direction, line or run",
+          "positions in mm and deg, directions -1, 0 or 1, lines and runs whole numbers");
     }
   }
   return points;

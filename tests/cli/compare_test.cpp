@@ -53,7 +53,7 @@ TEST(Compare, NamesEffectsThatCountAsNothing) {
                           "[[effects]]\nkind = \"custom\"\ntarget = \"EXX\"\nexpression = \"dir_x\"\n";
   const testing::ProgramRun outcome = compare(kExample + "campaign.toml " + model);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-  EXPECT_THAT(outcome.output, StartsWith(model + " (of no amplitude, counted as nothing: EXX by dir_x)"));
+  EXPECT_THAT(outcome.output, StartsWith(model + " (without an amplitude, taken as zero: EXX by dir_x)"));
 }
 
 /// An angle that somebody read the other way round: by the fit itself, and against a result that is right.
@@ -137,7 +137,7 @@ TEST(Compare, HeldOutLinesAreJudgedApart) {
   const double share = json.at("held_out").at(0).at("total").at("observations").get<double>() / 4712.0;
   EXPECT_NEAR(share, 0.2, 0.06);
   const testing::ProgramRun text = compare(kExample + "campaign.toml nominal nominal --held-out");
-  EXPECT_THAT(text.output, HasSubstr("Lines that no fit has seen: every fifth"));
+  EXPECT_THAT(text.output, HasSubstr("Held-out lines, used in no fit: every fifth"));
   EXPECT_THAT(text.output, HasSubstr("B against A, held-out lines: RMS "));
   EXPECT_THAT(text.output, HasSubstr("(1.000 times)"));
 }

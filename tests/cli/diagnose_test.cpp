@@ -120,7 +120,7 @@ TEST(DiagnoseProgram, LooksForTheLawThatIsAskedFor) {
     EXPECT_THAT(refused.errors, HasSubstr(part)) << formula;
   };
   wrong("\"x y\"", "names no target");
-  wrong("\"EXX: q\"", "\"q\" is no variable");
+  wrong("\"EXX: q\"", "\"q\" is not a variable");
   wrong("\"EXX: x y z t\"", "4 drivers");
   wrong("\"EXX: T_oil\"", "T_oil_degC is missing");
   wrong("model", "has no effect of kind \"empirical\"");

@@ -41,7 +41,7 @@ TEST(Exercise3, IsOneCommand) {
 
 TEST(Exercise3, PrintsNoUncertaintyWhereNoneIsStated) {
   const auto run = run_program("tables " + kExercises + "slideway.toml --at Y=1");
-  EXPECT_THAT(run.output, HasSubstr("of no stated uncertainty"));
+  EXPECT_THAT(run.output, HasSubstr("without a stated uncertainty"));
   EXPECT_THAT(run.output, Not(HasSubstr("+-")));
   const auto json = run_program("tables " + kExercises + "slideway.toml --at Y=1 --json");
   EXPECT_TRUE(Json::parse(json.output).at("volumetric_errors")[0].at("u_um").is_null());
@@ -265,8 +265,8 @@ std::string without_effect_keys(const std::string& metadata) {
 
 TEST_F(KnownErrors, TablesSayWhichToolAndConditionsTheyHoldFor) {
   done("tables " + path("known.toml") + " --tool side_x --conditions T_air=23 -o " + path("tables"));
-  const std::string said = "these errors are those of tables for tool side_x, T_air 23 degC; of ",
-                    other_tool = "the tables were made for tool side_x: of tool short ";
+  const std::string said = "these errors are those of tables for tool side_x, T_air 23 degC; for ",
+                    other_tool = "the tables were made for tool side_x: for tool short ";
   const auto said_once = [&](const std::string& arguments) {
     const std::string output = done(arguments);
     EXPECT_EQ(count_of(said, output), 1) << arguments << "\n" << output;
@@ -313,7 +313,7 @@ TEST_F(KnownErrors, EffectsAlongAPathAreSaidToBeInNoFigure) {
   for (const std::string& command :
        {"tables " + path("path.toml") + " --at X=100", "budget " + path("path.toml")}) {
     const std::string output = done(command + " --conditions feed_mm_min=3000");
-    EXPECT_THAT(output, HasSubstr("was identified and is in none of these figures: it acts along a path"));
+    EXPECT_THAT(output, HasSubstr("was identified but is in none of these figures: it acts along a path"));
     EXPECT_THAT(output, HasSubstr("! feed drives "));
     EXPECT_THAT(output, Not(HasSubstr("no identified error depends on feed")));
   }

@@ -163,7 +163,7 @@ TEST(RotaryTablesProgram, WritesErrorsOfRotaryAxesAndSaysWhatTheyLeave) {
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_THAT(run.output, HasSubstr("csv L-VOL+R-VOL, tool t"));
   EXPECT_THAT(run.output, HasSubstr("Errors of rotary axes left at 400 poses of all axes"));
-  EXPECT_THAT(run.output, ::testing::Not(HasSubstr("are in no table")));
+  EXPECT_THAT(run.output, ::testing::Not(HasSubstr("are in none of the tables")));
   EXPECT_THAT(run.output, HasSubstr("rotary_error_grid_table.csv"));
   const std::string errors = testing::content(std::filesystem::path(given.out("csv")) / "error_tables.csv");
   EXPECT_THAT(errors, HasSubstr("\nECC,C,-180,deg,0,"));
@@ -203,7 +203,7 @@ TEST(RotaryTablesProgram, OwnPositioningAloneIsSaidToBeAPart) {
   const auto run = run_program("tables " + given.model + " --format sinumerik --rotary-step 10 -o " +
                                given.out("siemens"));
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  EXPECT_THAT(run.output, HasSubstr("of the errors of axis C the tables hold R-POS alone"));
+  EXPECT_THAT(run.output, HasSubstr("the tables hold only R-POS of the errors of axis C"));
   const std::string file = testing::content(std::filesystem::path(given.out("siemens")) / "AX_EEC.INI");
   EXPECT_THAT(file, HasSubstr("$AA_ENC_COMP_STEP[0,C1]=10.000000\n"));
   EXPECT_THAT(file, HasSubstr("$AA_ENC_COMP_IS_MODULO[0,C1]=1\n"));
@@ -266,9 +266,9 @@ TEST(RotaryTablesProgram, RefusesPicturesOfNothing) {
     EXPECT_FALSE(std::filesystem::exists(given.out("tables.png"))) << options;
   };
   const std::string picture = " --picture " + given.out("tables.png");
-  refused("--type L-VOL --dry-run" + picture, "L-VOL has nothing of rotary axes, whose tables are pictured");
-  refused("--at X=0" + picture,
-          "--picture: no tables are made that it could be of (give -o FOLDER or --dry-run)");
+  refused("--type L-VOL --dry-run" + picture,
+          "L-VOL has no tables of rotary axes, and the picture shows those");
+  refused("--at X=0" + picture, "--picture needs tables, and none are made (give -o FOLDER or --dry-run)");
   refused("--dry-run --picture " + given.out("tables.svg"), "--picture takes the name of a PNG file");
   refused("--dry-run --picture " + given.out("none/tables.png"), "its folder does not exist");
   write_text(given.folder.path() / "bin" / "chromium", "#!/bin/sh\nexit 1\n");
@@ -337,7 +337,7 @@ TEST(RotaryTablesProgram, RewritesAProgramWithToolCentrePointMotion) {
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_THAT(run.output, HasSubstr("3 motions with tool centre point motion"));
   EXPECT_THAT(run.output, HasSubstr("1 rapids outside it are copied as they are"));
-  EXPECT_THAT(run.output, ::testing::Not(HasSubstr("are in no table")));
+  EXPECT_THAT(run.output, ::testing::Not(HasSubstr("are in none of the tables")));
   const std::string text = testing::content(given.out("new.ngc"));
   EXPECT_THAT(text, ::testing::StartsWith("(volcal compensate: result "));
   EXPECT_THAT(text, HasSubstr("\nG0 A-10 C0\nG43.4 H1\n"));

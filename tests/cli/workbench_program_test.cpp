@@ -83,7 +83,7 @@ TEST_F(WorkbenchProgram, ASessionNamesTheLineThatIsWrong) {
   const std::string whole = (fs::path(VOLCAL_SOURCE_DIR) / "datasets/hidden/21/campaign.toml").string();
   const ProgramRun wrong = run_program("session " + whole + " --do jump");
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.errors, HasSubstr("\"jump\" is no command of a session"));
+  EXPECT_THAT(wrong.errors, HasSubstr("\"jump\" is not a command of a session"));
 }
 
 }  // namespace

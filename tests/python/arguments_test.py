@@ -77,9 +77,9 @@ class FromArrays(Fitted):
 
     def test_names_that_are_no_texts(self) -> None:
         self.readings[3] = self.readings["x_mm"]
-        self.refused(self.campaign_of, "3", "is no text")
+        self.refused(self.campaign_of, "3", "is not a text")
         del self.readings[3]
-        self.refused(lambda: self.campaign_of(noise={1: 0.3}), "noise", "is no text")
+        self.refused(lambda: self.campaign_of(noise={1: 0.3}), "noise", "is not a text")
         machine = self.campaign.machine
         wrong: Any = ["a"]
         self.refused(lambda: volcal.Campaign.from_arrays(machine, wrong), "setup 1 is a str", "mappings")

@@ -81,7 +81,7 @@ class FromArrays(Case):
         error = self.refused(lambda: volcal.Campaign.from_arrays(self.machine, self.setups), "outside the travel of X")
         self.assertEqual((error.file, error.line), ("readings of P1_side_x", 5))
         x[4] = np.nan
-        error = self.refused(lambda: volcal.Campaign.from_arrays(self.machine, self.setups), "no finite number")
+        error = self.refused(lambda: volcal.Campaign.from_arrays(self.machine, self.setups), "not a finite number")
         self.assertEqual((error.file, error.line), ("readings of P1_side_x", 5))
 
     def test_arrays_that_do_not_fit(self) -> None:

@@ -112,7 +112,7 @@ class OwnEffects(Case):
 
     def test_what_cannot_be_registered(self) -> None:
         self.refused(lambda: self.register("reversal"), "one of the library's")
-        self.refused(lambda: self.register("a", target="EQQ"), "EQQ", "no target")
+        self.refused(lambda: self.register("a", target="EQQ"), "EQQ", "not a target")
         self.refused(lambda: self.register("a", variables=["speed"]), "speed is not a variable")
         self.refused(lambda: self.register("a", variables=[]), "depends on nothing")
         self.refused(lambda: self.register("a", parameters={"depth_mm": (1.0, 2.0, 3.0)}), "depth_mm")

@@ -104,7 +104,7 @@ inline double& error_of(PoseErrors<double>& errors, const std::string& symbol) {
   if (const auto location = LocationSymbol::parse(symbol)) {
     return errors.location[index_of(location->axis)][index_of(location->component)];
   }
-  throw std::invalid_argument(symbol + " is no error symbol");
+  throw std::invalid_argument(symbol + " is not an error symbol");
 }
 
 }  // namespace volcal::testing_support

@@ -76,7 +76,7 @@ std::string counts_as_nothing(const ModelSpec& model, const std::vector<EffectSp
   std::string labels;
   for (const EffectSpec& spec : effects)
     labels += (labels.empty() ? "" : ", ") + effect_label(*find_effect(spec.kind)->make(spec, model.file));
-  return "of no amplitude, counted as nothing: " + labels;
+  return "without an amplitude, taken as zero: " + labels;
 }
 
 /// A result, a model file, a folder of error tables, or the word "nominal".

@@ -67,7 +67,8 @@ std::string machine_toml(const Structure& structure) {
   return text +
          "[tools.short]\noffset_mm = [0.0, 0.0, -150.0]  # functional point from the spindle's reference "
          "point\n"
-         "[tools.side]  # sideways offsets make the rolls of the last axis visible: three tips, on no line\n"
+         "[tools.side]  # sideways offsets make the rolls of the last axis visible: three tips, not on one "
+         "line\n"
          "offset_mm = [100.0, 0.0, -200.0]\n"
          "[tools.front]\noffset_mm = [0.0, 100.0, -200.0]\n";
 }

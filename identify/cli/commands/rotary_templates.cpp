@@ -209,7 +209,8 @@ std::string setups_alone(const Structure& structure, AxisName axis, const std::s
   const char letter = letter_of(axis);
   const Eigen::Vector3d along = Eigen::Vector3d::Unit(direction_of(axis));
   std::string text = fmt::format(
-      "# Axis {0}, which turns alone: two linear axes keep no tool point on a sphere beside its line.\n"
+      "# Axis {0}, which turns alone: two linear axes cannot keep the tool point on a sphere away from its "
+      "line.\n"
       "# reading: angle of the axis about itself, actual less commanded (ISO 230-2)\n",
       letter);
   const InstrumentSchema& angle = schema_with(reads_rotation);
@@ -230,7 +231,8 @@ std::string spheres_introduced(const Structure& structure) {
   const std::string letters = rotary_letters(structure);
   const bool two = letters.size() > 1;
   return fmt::format(
-      "\n# Rotary axes. Three spheres on the table, on no line, each with two tools of different length and "
+      "\n# Rotary axes. Three spheres on the table, not on one line, each with two tools of different length "
+      "and "
       "one with a\n"
       "# lateral offset. At every sphere {}, the linear axes following (tool centre point control):\n"
       "# {}. volcal simulate study.toml -o poses writes the positions to\n"

@@ -149,7 +149,7 @@ void require_something_to_do(const TablesArguments& arguments) {
 
 void require_picture_of_tables(const TablesArguments& arguments) {
   if (!makes_tables(arguments))
-    throw InputError({}, "--picture: no tables are made that it could be of", "give -o FOLDER or --dry-run");
+    throw InputError({}, "--picture needs tables, and none are made", "give -o FOLDER or --dry-run");
   require_picture("--picture", arguments.picture);
 }
 
@@ -247,7 +247,7 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
   if (made.tolerance > 0.0 && !made.step.reached) {
     fmt::print(
         "! {} {:g} um: {}\n",
-        made.step.limited ? "the limits of the controller do not allow" : "no step that is tried reaches",
+        made.step.limited ? "the limits of the controller do not allow" : "none of the steps tried reaches",
         made.tolerance / kMicro,
         made.step.limited ? limits_text(made.format->limits)
                           : std::string("give --step for a finer table, or --tolerance for a coarser one"));

@@ -28,8 +28,7 @@ Campaign verifying_campaign(const std::string& file, const FitResult& result) {
 }
 
 void require_certificate_can_be_made(const CertificateArguments& arguments, bool written) {
-  if (!written)
-    throw InputError({}, "--certificate: no tables are written that it could be of", "give -o FOLDER");
+  if (!written) throw InputError({}, "--certificate needs tables, and none are written", "give -o FOLDER");
   if (!report_available())
     throw InputError({}, "--certificate draws a page of the report, which this program lacks",
                      std::string(how_to_get_report()));

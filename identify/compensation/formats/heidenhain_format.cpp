@@ -119,7 +119,7 @@ void add_com_rotary(const FitResult& result, const TableFormatOptions& options, 
                     std::vector<ComTable>& tables) {
   if (!options.type.has(CompensationPart::RotaryPositioning)) return;
   if (has_spacing(options))
-    throw InputError({}, "heidenhain: rows of a spacing of 2^n x 0.0001 deg end no turn",
+    throw InputError({}, "heidenhain: rows of a spacing of 2^n x 0.0001 deg do not divide a turn evenly",
                      "give --set rows=axispos where the control has the column, or leave R-POS out");
   for (const SampledTable& sampled : sample_rotary_positioning(heidenhain_format(), result, options)) {
     const AxisTable table = turn_from_zero(sampled.table);

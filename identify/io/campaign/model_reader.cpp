@@ -86,7 +86,7 @@ class ModelReader {
     const auto known = possible_locations(machine_);
     const std::string symbol = location->name();
     if (std::ranges::find(known, *location) != known.end()) {
-      functions.fail(name, "functions." + printable(name) + " is a location error, no error motion",
+      functions.fail(name, "functions." + printable(name) + " is a location error, not an error motion",
                      "write it below [locations]: " + symbol + " = \"zero\" switches it off, " + symbol +
                          "_" + std::string(edge_unit(location->component)) + " = NUMBER states it");
     }

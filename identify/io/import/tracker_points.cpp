@@ -355,7 +355,8 @@ class TrackerPoints {
                              const std::vector<Eigen::Vector3d>& commanded_w) {
     const auto count = static_cast<Eigen::Index>(measured_s.size());
     if (measured_s.size() < kLeastPoints)
-      fail_fit("the list has " + std::to_string(count) + " points", "three at least, on no line, are needed");
+      fail_fit("the list has " + std::to_string(count) + " points",
+               "give at least three that do not lie on one line");
     Eigen::Matrix3Xd from(3, count), to(3, count);
     for (Eigen::Index i = 0; i < count; ++i) {
       from.col(i) = measured_s[static_cast<std::size_t>(i)];
@@ -365,7 +366,7 @@ class TrackerPoints {
     const Eigen::Vector3d widths =
         Eigen::JacobiSVD<Eigen::Matrix3d>(centred * centred.transpose()).singularValues().cwiseSqrt();
     if (!(widths[1] > kLeastWidth * widths[0]))
-      fail_fit("the commanded points lie on a line", "three at least, on no line, are needed");
+      fail_fit("the commanded points lie on a line", "give at least three that do not lie on one line");
     const Eigen::Isometry3d pose(Eigen::umeyama(from, to, false));
     const double rms = std::sqrt((pose * from - to).squaredNorm() / static_cast<double>(count));
     if (!(rms < kWorstFit)) {

@@ -369,7 +369,7 @@ std::string comparison_text(const Campaign& campaign, std::span<const ComparedMo
 std::string heldout_text(const Campaign& campaign, std::span<const HeldOutModel> models,
                          std::size_t observations) {
   const Comparisons comparisons = comparisons_of(models);
-  std::string text = fmt::format("Lines that no fit has seen: every fifth, {} of {}.\n",
+  std::string text = fmt::format("Held-out lines, used in no fit: every fifth, {} of {}.\n",
                                  count_number(static_cast<long long>(comparisons[0]->total.observations)),
                                  observations_text(observations));
   for (std::size_t m = 0; m < models.size(); ++m) {

@@ -38,7 +38,7 @@ std::string volumetric_text(const FitResult& result, const std::vector<Volumetri
   for (const char* name : {"ea", "eb", "ec"}) columns.push_back({fmt::format("{}{} [urad]", name, u95)});
   columns.push_back({"", Align::Left});
   TextTable table(columns, uncertain ? "Volumetric error (actual - nominal)"
-                                     : "Volumetric error (actual - nominal), of no stated uncertainty");
+                                     : "Volumetric error (actual - nominal), without a stated uncertainty");
   for (const VolumetricError& error : errors) {
     std::vector<std::string> cells;
     for (const Axis& axis : result.machine.axes)

@@ -443,7 +443,7 @@ TEST(HeidenhainRotaryTables, ByHand) {
   EXPECT_EQ(find_file(files, "CONFIG.CMA.txt")->content, "ACTIVE C\n* C.COM\n");
   options.settings["rows"] = "spacing";
   EXPECT_THAT(testing::refusal([&] { write_tables(*find_table_format("heidenhain"), result, options); }),
-              HasSubstr("end no turn"));
+              HasSubstr("do not divide a turn evenly"));
 }
 
 /// ECC = a sin(12 C), 300 mm from the axis at most: straight lines between positions h apart are a (12 h)^2 /

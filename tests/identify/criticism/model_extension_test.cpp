@@ -82,7 +82,8 @@ TEST_F(ModelExtension, TheMachineMustHaveTheAxis) {
 }
 
 TEST_F(ModelExtension, TheKindMustBeKnown) {
-  expect_refused(effect_spec("gremlins", {}), "is of no kind of effect", "diagnose --list");
+  expect_refused(effect_spec("gremlins", {}), "is of a kind of effect that this program does not know",
+                 "diagnose --list");
 }
 
 /// Without a campaign nothing is known of channels and directions.

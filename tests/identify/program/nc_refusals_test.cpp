@@ -150,7 +150,7 @@ TEST(NcRefusals, OfBlocksThatMeanNothingOrTwoThings) {
       {"F100 G90.1 G2 X10 I5\n", "1: under G90.1 an arc needs both I and J (write both)"},
       {"F100 G2\n", "1: G2 has no coordinates (write where it goes)"},
       {"G4 P1 X2\n",
-       "1: coordinates stand beside G4; controls differ in what they mean (write them in two blocks)"},
+       "1: coordinates in the block of G4; controls differ in what they mean (write them in two blocks)"},
       {"G1 G92 X1\n", "1: a motion and an offset want the same coordinates (write them in two blocks)"},
       {"G21 G17 F100\nG0 X0 Y0 Z0\nG2 X10 I5\nG43.1 J1\n",
        "4: a motion and an offset want the same coordinates (write them in two blocks)"},

@@ -327,7 +327,8 @@ TEST(StandardFigures, SphericalBallBarRunIsNoCircle) {
   const auto figures =
       standard_figures(campaign, records_of(campaign, [](auto, auto, double reading) { return reading; }));
   EXPECT_THAT(figures.circles, IsEmpty());
-  EXPECT_THAT(sentences(figures.not_recognised), ElementsAre("sphere: not two axes move"));
+  EXPECT_THAT(sentences(figures.not_recognised),
+              ElementsAre("sphere: the number of axes that move is not two"));
 }
 
 /// Error vectors (1, 0, 0) um more at x = 1 than at x = 0 on a unit square; aligned rigidly: -0.5, +0.5 in x.

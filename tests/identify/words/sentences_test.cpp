@@ -102,8 +102,8 @@ const std::vector<WordedFinding>& examples() {
        "others), is the tool the right one?"},
       {{FindingCode::ReadingsAnglesInRadians,
         {{"setup", "C"}, {"file", "c.csv"}, {"columns", Texts{"c_deg"}}}},
-       "setup \"C\" (c.csv): c_deg holds whole degrees if it is in radians, and no round numbers of degrees: "
-       "if so add scale = { c_deg = 57.2957795131 }"},
+       "setup \"C\" (c.csv): c_deg holds values that are not round in degrees but are whole degrees if it is "
+       "in radians: if so add scale = { c_deg = 57.2957795131 }"},
       {{FindingCode::ReadingsMisread,
         {{"setups", std::vector<std::string>{"A", "B"}},
          {"columns", std::vector<std::string>{"dx_um", "dy_um"}},
@@ -285,8 +285,7 @@ const std::vector<WordedFinding>& examples() {
          {"told", std::int64_t{5}},
          {"spacing", FindingNumber{kRadianPerDegree * 30.0, "deg", kRadianPerDegree}}}},
        "axis C stood at 12 positions, on a grid of 30 deg: waves of more than 5 a turn look there like "
-       "longer "
-       "ones and are in no error motion; add positions of C off that grid"},
+       "longer ones and are in none of the error motions; add positions of C off that grid"},
       {{FindingCode::RankHeldByPrior,
         {{"block", "bb1: centre"}, {"parameter", "z"}, {"sigma", FindingNumber{1e-4, "mm", 1e-3}}}},
        "bb1: centre z: held at its guess +- 0.1 mm"},
@@ -362,7 +361,8 @@ const std::vector<WordedFinding>& examples() {
       {{FindingCode::DiagnosisNamed, {{"effect", "many"}, {"kind", "custom"}, {"shape", ""}}},
        "The missing effect is: many (custom)"},
       {{FindingCode::DiagnosisUnknown, {{"direction", "X"}, {"rms", FindingNumber{0.5e-6, "um", 1e-6}}}},
-       "An effect that is in no catalogue: it depends on nothing recorded that was tried, and acts along X; "
+       "An effect that is not in the catalogue: it depends on nothing recorded that was tried, and acts "
+       "along X; "
        "its strongest test alone explains 0.5 um RMS of the readings"},
       {{FindingCode::DiagnosisMoreUnknown,
         {{"direction", "X"},
@@ -462,7 +462,7 @@ const std::vector<WordedFinding>& examples() {
          {"systematic_given", FindingNumber{0.72e-6}},
          {"systematic_reached", FindingNumber{0.41e-6}},
          {"tests", std::int64_t{400}}}},
-       "Your own, a: the readings do not ask for it (log10 p 0.0 with all 400 tests counted, gain -5); "
+       "Your own, a: the readings do not support it (log10 p 0.0 with all 400 tests counted, gain -5); "
        "held-out readings keep 0.4 um of systematic error with it, 0.41 um without it, 0.72 um as given."},
       {{FindingCode::DiagnosisTried,
         {{"effect", "a"},
@@ -470,7 +470,7 @@ const std::vector<WordedFinding>& examples() {
          {"gain", FindingNumber{-5.0}},
          {"log10_p", FindingNumber{0.0}},
          {"tests", std::int64_t{400}}}},
-       "Your own, a: the readings do not ask for it (log10 p 0.0 with all 400 tests counted, gain -5)."},
+       "Your own, a: the readings do not support it (log10 p 0.0 with all 400 tests counted, gain -5)."},
       {{FindingCode::DiagnosisTried,
         {{"effect", "a"},
          {"gain", FindingNumber{0.0}},
@@ -595,7 +595,7 @@ const std::vector<WordedFinding>& examples() {
        "line_X: line 3: no axis moves"},
       {{FindingCode::NoTestNotTwoAxesMove,
         {{"setup", "bar"}, {"line", std::int64_t{3}}, {"more_lines", std::int64_t{2}}}},
-       "bar: line 3 and 2 more: not two axes move"},
+       "bar: line 3 and 2 more: the number of axes that move is not two"},
       {{FindingCode::NoTestNoCircle, {{"setup", "bar"}}}, "bar: the commanded points do not lie on a circle"},
       {{FindingCode::NoTestNoStraightLine, {{"setup", "line_X"}}},
        "line_X: the commanded points do not lie on a straight line"},
@@ -634,31 +634,30 @@ const std::vector<WordedFinding>& examples() {
          {"values", std::vector<FindingNumber>{{25.0, "degC", 1.0}, {2000.0, "s", 1.0}}},
          {"shared_effects", std::vector<std::string>{"tool load EAZ", "coupling EAY Y Z"}},
          {"effects_in_no_table", std::vector<std::string>{"following error X"}}}},
-       "these errors are those of tables for tool side, T_column 25 degC, time 2000 s; of tool load EAZ, "
-       "coupling EAY Y Z they hold what is nearest to it in a rigid body with that tool; following error X "
-       "is "
+       "these errors are those of tables for tool side, T_column 25 degC, time 2000 s; for tool load EAZ, "
+       "coupling EAY Y Z they hold the nearest errors of a rigid body with that tool; following error X is "
        "in none of them"},
       {{FindingCode::ErrorsOfTables,
         {{"conditions", std::vector<std::string>{"T_column"}},
          {"values", std::vector<FindingNumber>{{25.0, "degC", 1.0}}}}},
        "these errors are those of tables for T_column 25 degC"},
       {{FindingCode::TablesOfOtherTool, {{"tool", "short"}, {"tables_tool", "side"}}},
-       "the tables were made for tool side: of tool short they do not hold the effects that differ between "
-       "tools"},
+       "the tables were made for tool side: for tool short they lack the effects that differ between tools"},
       {{FindingCode::TablesOfOtherConditions,
         {{"condition", "T_column"},
          {"value", FindingNumber{20.0, "degC", 1.0}},
          {"of_tables", FindingNumber{25.0, "degC", 1.0}}}},
        "the tables hold for T_column = 25 degC: T_column = 20 degC changes nothing in them"},
       {{FindingCode::EffectInNoTable, {{"effect", "following error X"}}},
-       "following error X was identified and is in no table: it acts along a path or in one setup"},
+       "following error X was identified but is in none of the tables: it acts along a path or in one setup"},
       {{FindingCode::EffectInNoFigure, {{"effect", "following error X"}}},
-       "following error X was identified and is in none of these figures: it acts along a path or in one "
+       "following error X was identified but is in none of these figures: it acts along a path or in one "
        "setup"},
       {{FindingCode::RotaryErrorsInNoTable, {{"axis", "C"}}},
-       "errors of axis C were identified and are in no table: tables are for linear axes with C at 0"},
+       "errors of axis C were identified but are in none of the tables: tables are for linear axes with C at "
+       "0"},
       {{FindingCode::RotaryErrorsPartlyInTables, {{"axis", "C"}, {"type", "R-POS"}}},
-       "of the errors of axis C the tables hold R-POS alone"},
+       "the tables hold only R-POS of the errors of axis C"},
       {{FindingCode::RotaryErrorsUnknownToTables, {{"axis", "C"}}},
        "errors of axis C were not identified: the tables hold with C at 0, and what C does elsewhere is in "
        "none "
@@ -688,10 +687,8 @@ const std::vector<WordedFinding>& examples() {
        "compensation"},
       {{FindingCode::RotaryTablesOffIdeal, {{"off", FindingNumber{12.3e-6, "um", 1e-6}}}},
        "tables of rotary axes are up to 12.30 um off what their types could correct: what changes within one "
-       "of "
-       "their steps, as the errors of a worm, needs a finer --rotary-step; what depends on two axes at once "
-       "is "
-       "in grids of rotary axes alone"},
+       "of their steps, such as the errors of a worm, needs a finer --rotary-step; what depends on two axes "
+       "at once is in grids of rotary axes alone"},
       {{FindingCode::RotaryTablesOffIdeal,
         {{"off", FindingNumber{12.3e-6, "um", 1e-6}}, {"constants", true}}},
        "the constants of rotary axes are up to 12.30 um off what R-POR could correct: they say where the "

@@ -147,7 +147,7 @@ TEST(DoubtfulAngles, WholeDegreesAsRadiansAreNamed) {
     setup.readings.source_line.push_back(i + 2);
   }
   setup.readings.value.assign(1, std::vector<double>(12, 0.0));
-  EXPECT_THAT(doubt_about(setup), HasSubstr("c_deg holds whole degrees if it is in radians"));
+  EXPECT_THAT(doubt_about(setup), HasSubstr("are whole degrees if it is in radians"));
   auto& degrees = setup.readings.position[index_of(AxisName::C)];
   for (int i = 0; i < 12; ++i) degrees[static_cast<std::size_t>(i)] = 0.5 * i * kRadianPerDegree;
   EXPECT_EQ(doubt_about(setup), "") << "a small arc in half degrees";

@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"NoTarget", "expression = \"z\"\n", 5, "key target is missing in effects[1]", "add target"},
         Broken{"NoExpression", "target = \"EAY\"\n", 5, "key expression is missing in effects[1]",
                "add expression"},
-        Broken{"WrongTarget", "target = \"EAQ\"\nexpression = \"z\"\n", 5, "\"EAQ\" is no target",
+        Broken{"WrongTarget", "target = \"EAQ\"\nexpression = \"z\"\n", 5, "\"EAQ\" is not a target",
                "write an error motion (EAY)"},
         Broken{"UnknownVariable", "target = \"EAY\"\nexpression = \"z * height\"\n", 5,
                "at character 5, \"height\"", "T_<channel>"},

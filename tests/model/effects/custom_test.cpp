@@ -224,7 +224,7 @@ TEST_F(Custom, SaysWhatIsWrongWithATarget) {
   const auto said = [&](const std::string& target) { return refusal(custom(target, "x")); };
   for (const char* wrong :
        {"EXQ", "tool", "tool w", "station x", "station P1", "reading", "length", "floor x"}) {
-    EXPECT_THAT(said(wrong), HasSubstr("is no target")) << wrong;
+    EXPECT_THAT(said(wrong), HasSubstr("is not a target")) << wrong;
   }
   EXPECT_THAT(said("EXA"), HasSubstr("the machine has no axis A"));
   EXPECT_THAT(said("tool long x"), HasSubstr("no setup uses a tool \"long\""));

@@ -152,17 +152,17 @@ TEST_F(Empirical, RefusesWhatItCannotBe) {
     EXPECT_TRUE(text.starts_with(of)) << text;
     return text.substr(std::min(of.size(), text.size()));
   };
-  EXPECT_EQ(refused(stated("EAY", "x q", {0, 0}, {1, 1}, {2, 2})), "drivers: \"q\" is no variable");
+  EXPECT_EQ(refused(stated("EAY", "x q", {0, 0}, {1, 1}, {2, 2})), "drivers: \"q\" is not a variable");
   EXPECT_EQ(refused(stated("EAY", "x y z a", {0}, {1}, {2})), "4 drivers");
   EXPECT_EQ(refused(stated("EAY", "x y", {0}, {1, 1}, {2, 2})), "from holds 1 numbers for 2 drivers");
   EXPECT_EQ(refused(stated("EAY", "x", {3}, {1}, {2})), "the range of x is empty");
-  EXPECT_EQ(refused(stated("EAY", "x", {0}, {1}, {2.5})), "pieces: 2.5 is no number of pieces");
+  EXPECT_EQ(refused(stated("EAY", "x", {0}, {1}, {2.5})), "pieces: 2.5 is not a number of pieces");
   EXPECT_EQ(refused(stated("EAY", "x y z", {0, 0, 0}, {1, 1, 1}, {9, 9, 9})),
             "these pieces need 1728 coefficients");
-  EXPECT_EQ(refused(stated("EVIL", "x", {0}, {1}, {2})), "\"EVIL\" is no target");
+  EXPECT_EQ(refused(stated("EVIL", "x", {0}, {1}, {2})), "\"EVIL\" is not a target");
   EffectSpec spec = stated("EAY", "x", {0}, {1}, {2});
   spec.options.set("only", std::string("the left half"));
-  EXPECT_EQ(refused(spec), "only = \"the left half\" is no part of a campaign");
+  EXPECT_EQ(refused(spec), "only = \"the left half\" is not a part of a campaign");
   spec = stated("EAY", "x", {0}, {1}, {2});
   spec.options.set("coefficients", std::vector<double>{1e-6, 2e-6});
   EXPECT_EQ(refused(spec), "2 coefficients for 5 functions");

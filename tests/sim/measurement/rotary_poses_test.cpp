@@ -167,7 +167,7 @@ TEST(RTestPlan, RefusesWhatLeavesTooFewPoses) {
   EXPECT_THAT(plan_refusal(beyond, machine), testing::HasSubstr("range_deg of A is not within its travel"));
   RTest other = r_test_at({0, 0, 0});
   other.poses.grid.points = {{AxisName::B, 5}};
-  EXPECT_THAT(plan_refusal(other, machine), testing::HasSubstr("B is no rotary axis of the machine"));
+  EXPECT_THAT(plan_refusal(other, machine), testing::HasSubstr("B is not a rotary axis of the machine"));
   RTest twice = r_test_at({0, 0, 0});
   twice.poses.spheres.push_back(twice.poses.spheres.front());
   EXPECT_THAT(plan_refusal(twice, machine), testing::HasSubstr("two spheres are called S1"));
@@ -175,7 +175,7 @@ TEST(RTestPlan, RefusesWhatLeavesTooFewPoses) {
   kind.poses = r_test_at({0, 0, 0}).poses;
   kind.contacts = true;
   kind.kinds = {"Q"};
-  EXPECT_THAT(plan_refusal(kind, machine), testing::HasSubstr("\"Q\" is no kind of contact"));
+  EXPECT_THAT(plan_refusal(kind, machine), testing::HasSubstr("\"Q\" is not a kind of contact"));
 }
 
 TEST(RTestPlan, AnAxisThatCannotBeFollowedIsLeftOut) {

@@ -150,7 +150,8 @@ std::function<int()> define_five_axis_study(CLI::App& app) {
 
 const Command& five_axis_study_command() {
   static const Command command = {
-      "five-axis", "rotary axes identified on machines of four structures, at poses that no reading stood at",
+      "five-axis",
+      "rotary axes identified on machines of four structures, at poses where no reading was taken",
       "  volcal study five-axis -n 8 --turns 12 --tilts 9\n"
       "  volcal study five-axis -n 100 -o five-axis --resume\n",
       define_five_axis_study};

@@ -52,7 +52,7 @@ std::string headline_of(Verdict verdict) {
     case Verdict::OneOf:
       return "One of several effects is missing";
     case Verdict::Unknown:
-      return "An effect that is in no catalogue";
+      return "An effect that is not in the catalogue";
     case Verdict::NothingAbove:
       return "Nothing above the noise";
     case Verdict::NotVisible:

@@ -140,7 +140,7 @@ export class Session {
 
   unknown() {
     const own = this.now().names;
-    const unknown = own.includes('empirical:y:x:z') || own.some((name) => name.startsWith('formula:')) ? [] : [{ number: 0, label: 'something that depends on x and z along Y', words: 'An effect that is in no catalogue: it depends on x and z, and acts along Y; its strongest test alone explains 0.42 um RMS of the readings', variables: ['x', 'z'], direction: 'Y', rms_um: 0.42, p: '1e-40', period_mm: null }];
+    const unknown = own.includes('empirical:y:x:z') || own.some((name) => name.startsWith('formula:')) ? [] : [{ number: 0, label: 'something that depends on x and z along Y', words: 'An effect that is not in the catalogue: it depends on x and z, and acts along Y; its strongest test alone explains 0.42 um RMS of the readings', variables: ['x', 'z'], direction: 'Y', rms_um: 0.42, p: '1e-40', period_mm: null }];
     return { model: this.current, ready: true, unknown_leads: true, unknown, drawn: this.drawn[this.current] ?? [], next: unknown.length === 0 ? [] : ['Measure Y once more from both sides at z = -260 mm: it halves the uncertainty of the surface.'] };
   }
 

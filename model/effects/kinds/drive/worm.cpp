@@ -99,7 +99,7 @@ std::vector<KeySchema> wave_keys(const std::string& of) {
 std::unique_ptr<FormulaEffect> make_ring_eccentricity(const EffectTable& table) {
   const ErrorSymbol symbol = rotary_symbol(table);
   if (!symbol.is_positioning())
-    table.fail(symbol.name() + " is no rotation about the axis itself",
+    table.fail(symbol.name() + " is not a rotation about the axis itself",
                "write EAA, EBB or ECC: an encoder acts on the angle of its axis");
   const std::string label = "ring eccentricity " + symbol.name();
   return std::make_unique<FormulaEffect>(

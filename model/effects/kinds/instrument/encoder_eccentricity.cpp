@@ -20,7 +20,7 @@ int channel_of_encoder(const EffectTable& table, const std::string& encoder) {
   for (const Instrument* instrument : instruments()) {
     if (const auto channel = channel_of_encoder(instrument->schema().traits, encoder)) return *channel;
   }
-  table.fail("\"" + encoder + "\" is no encoder", "write azimuth or elevation");
+  table.fail("\"" + encoder + "\" is not an encoder", "write azimuth or elevation");
 }
 
 /// An encoder of an instrument that stands at a station, or of one that is carried from station to station.

@@ -60,7 +60,8 @@ int lobes_in(const EffectTable& table) {
   const double number = table.number("lobes", kUsualLobes[1]);
   const int lobes = static_cast<int>(std::lround(number));
   if (number != lobes || lobes < kFewestLobes || lobes > kMostLobes)
-    table.fail("\"lobes\" is no whole number from 2 to 12", "write lobes = 3 for a probe on three supports");
+    table.fail("\"lobes\" is not a whole number from 2 to 12",
+               "write lobes = 3 for a probe on three supports");
   return lobes;
 }
 

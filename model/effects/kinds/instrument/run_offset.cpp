@@ -22,7 +22,7 @@ std::unique_ptr<FormulaEffect> make_run_offset(const EffectTable& table) {
   const std::string setup = table.text("setup", "add setup = \"NAME\"");
   const auto number = table.spec.options.number("run");
   if (!number) table.fail("it names no run", "add run = 2");
-  if (*number != std::round(*number)) table.fail("its run is no whole number", "add run = 2");
+  if (*number != std::round(*number)) table.fail("its run is not a whole number", "add run = 2");
   const auto run = static_cast<std::int32_t>(*number);
   const std::string driver = "run " + std::to_string(run);
   const std::string label = driver + " of " + setup;

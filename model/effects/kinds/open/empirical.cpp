@@ -62,7 +62,7 @@ Owner owner_of(const EffectTable& table) {
                                    {"setup ", Owner::Kind::Setup}}) {
     if (text.starts_with(word)) return {kind, text.substr(std::string_view(word).size())};
   }
-  table.fail("only = \"" + text + "\" is no part of a campaign",
+  table.fail("only = \"" + text + "\" is not a part of a campaign",
              "write \"tool NAME\", \"station NAME\" or \"setup NAME\"");
 }
 
@@ -111,7 +111,7 @@ struct Statement {
     for (const std::string& word : words_in(list)) {
       const auto variable = Variable::parse_written(word);
       if (!variable)
-        table.fail(key + ": \"" + word + "\" is no variable", "variables are " + listed_variables());
+        table.fail(key + ": \"" + word + "\" is not a variable", "variables are " + listed_variables());
       variables.push_back(*variable);
     }
     return variables;
@@ -138,7 +138,7 @@ struct Statement {
       if (pieces) {
         const double count = (*pieces)[i];
         if (count != std::floor(count) || count < 1.0 || count > kMostPieces)
-          table.fail(fmt::format("pieces: {:g} is no number of pieces", count),
+          table.fail(fmt::format("pieces: {:g} is not a number of pieces", count),
                      fmt::format("write whole numbers from 1 to {:g}", kMostPieces));
         side.pieces = static_cast<int>(count);
       }

@@ -42,7 +42,7 @@ const Power& power_of(const EffectTable& table, const std::string& shape) {
   for (const Power& power : kPowers) {
     if (shape == power.shape) return power;
   }
-  table.fail("\"" + shape + "\" is no shape", "write linear, quadratic or cubic");
+  table.fail("\"" + shape + "\" is not a shape", "write linear, quadratic or cubic");
 }
 
 std::unique_ptr<FormulaEffect> make_coupling(const EffectTable& table) {

@@ -26,10 +26,10 @@ std::unique_ptr<FormulaEffect> make_foundation_tilt(const EffectTable& table) {
   const std::string about = table.text("about", "add about = \"y\"");
   const std::size_t direction = kDirections.find(about);
   if (about.size() != 1 || direction == std::string::npos)
-    table.fail("\"" + about + "\" is no direction", "write about = \"x\", \"y\" or \"z\"");
+    table.fail("\"" + about + "\" is not a direction", "write about = \"x\", \"y\" or \"z\"");
   const std::string shape = table.spec.options.text("shape").value_or("linear");
   if (shape != "linear" && shape != "quadratic")
-    table.fail("\"" + shape + "\" is no shape", "write linear or quadratic");
+    table.fail("\"" + shape + "\" is not a shape", "write linear or quadratic");
   const bool quadratic = shape == "quadratic";
   const std::string driver(1, lower_letter_of(axis));
   const std::string label = "foundation about " + about + " by " + driver + (quadratic ? "^2" : "");

@@ -45,7 +45,7 @@ Factors factors_of(const EffectTable& table) {
   std::vector<AxisName> axes;
   for (const std::string& word : words_in(text)) {
     const auto axis = word.size() == 1 ? axis_from_letter(word[0]) : std::nullopt;
-    if (!axis) table.fail("\"" + word + "\" is no axis", remedy);
+    if (!axis) table.fail("\"" + word + "\" is not an axis", remedy);
     axes.push_back(*axis);
   }
   std::ranges::sort(axes);

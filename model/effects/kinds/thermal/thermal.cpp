@@ -170,7 +170,7 @@ std::unique_ptr<FormulaEffect> make_squareness_drift(const EffectTable& table) {
   const auto location = LocationSymbol::parse(name);
   if (!location || !is_rotation(location->component) || is_rotary(location->axis) ||
       direction_of(location->component) == direction_of(location->axis)) {
-    table.fail("\"" + name + "\" is no squareness", "write EC0Y, EA0Z, EB0Z, or those of another datum");
+    table.fail("\"" + name + "\" is not a squareness", "write EC0Y, EA0Z, EB0Z, or those of another datum");
   }
   const SquarenessMotion motion = motion_of_squareness(*location);
   const AxisName axis = location->axis;

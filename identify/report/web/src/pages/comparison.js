@@ -43,7 +43,7 @@ export function renderComparison(body, data) {
   if (data.notes.length > 0) body.append(el('ul', { class: 'messages' }, data.notes.map((text) => el('li', {}, printed(text)))));
   body.append(totalsTable(data), note('Reading minus prediction, with the stated noise; stations, dead paths, alignments and other nuisance parameters are estimated anew for every model.'));
   if (data.held_out.length > 0) {
-    body.append(el('h3', {}, 'Lines that no fit has seen'), table([
+    body.append(el('h3', {}, 'Held-out lines, used in no fit'), table([
       { name: 'Model', align: 'left', cell: (row) => row.name },
       { name: '', align: 'left', cell: (row) => (row.fitted ? 'fitted anew without them' : 'nothing to fit') },
       { name: 'Observations', cell: (row) => count(row.observations) },

@@ -131,7 +131,7 @@ export function renderResidualVariables(body, data) {
   const order = [view.kind, ...view.kinds.filter((kind) => kind !== view.kind)];
   controls.append(choice('Means of', order.map((kind) => [kind, kKinds[kind]]), (value) => { view.kind = value; redraw(); }));
   body.append(
-    note('Reading minus prediction. Left: means in bins, of the readings or of the displacement of the functional point that they ask for (beams from several sides feel one with different signs, so that the mean of lengths may hide it), with bars of ± 2 standard deviations that noise alone would give them, its correlated drift and line offsets counted. A mean that leaves zero by more than its bar shows what the model lacks. Right: readings and the band of ± 2 standard deviations of their noise.',
+    note('Reading minus prediction. Left: means in bins, of the readings or of the displacement of the functional point that they ask for (beams from several sides see it with different signs, so that the mean of lengths may hide it), with bars of ± 2 standard deviations that noise alone would give them, its correlated drift and line offsets counted. A mean that leaves zero by more than its bar shows what the model lacks. Right: readings and the band of ± 2 standard deviations of their noise.',
       data.drawn < data.total ? ` ${count(data.drawn)} of ${count(data.total)} readings are drawn, an even choice; means use all.` : ''),
     controls,
   );

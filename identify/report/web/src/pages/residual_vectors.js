@@ -63,7 +63,7 @@ const rms = (vectors) => Math.sqrt(vectors.reduce((sum, v) => sum + norm(v) ** 2
 
 export function renderResidualVectors(body, data) {
   if (data.means.length + data.single.length === 0) {
-    body.append(note('No reading feels a displacement of the functional point.'));
+    body.append(note('No reading is sensitive to a displacement of the functional point.'));
     return;
   }
   const view = new VectorView(data);
@@ -86,7 +86,7 @@ export function renderResidualVectors(body, data) {
   const nodes = view.models.map(() => el('div', { class: 'plot scene' }));
   describe();
   body.append(
-    note('Displacement of the functional point that the residuals ask for, from the nominal point to the magnified dot; workpiece coordinates. Means: least squares over the readings of a cell of the measured volume, directions that they hardly feel left at zero; u is what noise puts into one. Single readings: along what each of them feels.'),
+    note('Displacement of the functional point that the residuals ask for, from the nominal point to the magnified dot; workpiece coordinates. Means: least squares over the readings of a cell of the measured volume, directions to which they are hardly sensitive left at zero; u is what noise puts into one. Single readings: along what each of them feels.'),
     controls,
     el('div', { class: nodes.length > 1 ? 'scenes' : '' }, nodes.map((node, k) => el('figure', {}, [captions[k], node]))),
   );

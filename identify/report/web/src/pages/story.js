@@ -39,7 +39,7 @@ const missingItem = (effect) => el('div', { class: 'found' }, [
 
 const drawnItem = (surface) => el('div', { class: 'found' }, [
   el('strong', {}, surface.label),
-  el('div', { class: 'muted' }, `no name of the catalogue explains it as well as a smooth function does; log evidence over the model without it +${fixed(surface.log_evidence, 0)}.`),
+  el('div', { class: 'muted' }, `no effect of the catalogue explains it as well as a smooth function does; log evidence over the model without it +${fixed(surface.log_evidence, 0)}.`),
 ]);
 
 const ladderTable = (ladder) => table([

@@ -144,7 +144,7 @@ function watchDrawing() {
   else if (drawing.begun) {
     const none = surfaces.value.length === drawing.surfaces && !trouble.value;
     drawing = null;
-    if (none) trouble.value = { what: 'draw', error: 'The readings draw no curve or surface of it.', remedy: 'Look along its variables: a suspect with a name may explain it.' };
+    if (none) trouble.value = { what: 'draw', error: 'No curve or surface of it can be drawn from the readings.', remedy: 'Look along its variables: a suspect with a name may explain it.' };
   }
 }
 

@@ -52,7 +52,7 @@ function Explanation({ list, onClose }) {
   const strong = list.slice(0, 4);
   return (
     <div class="explanation" role="status">
-      {strong.length === 0 ? 'In no recorded variable do these readings differ from the others.' : <>They differ from the others most in {strong.map(({ variable, difference }, k) => <span key={variable.name}>{k > 0 ? ', ' : ''}<b>{variable.label}</b> ({difference >= 20 ? 'wholly apart' : `${significant(difference, 2)} standard deviations`})</span>)}. The pictures show these.</>}
+      {strong.length === 0 ? 'These readings differ from the others in no recorded variable.' : <>They differ from the others most in {strong.map(({ variable, difference }, k) => <span key={variable.name}>{k > 0 ? ', ' : ''}<b>{variable.label}</b> ({difference >= 20 ? 'wholly apart' : `${significant(difference, 2)} standard deviations`})</span>)}. The pictures show these.</>}
       {' '}Suspects that depend on them stand at the right. <button type="button" onClick={onClose}>Close</button>
     </div>
   );

@@ -85,7 +85,7 @@ function InModel() {
   );
 }
 
-const kRemedy = 'The readings hardly feel it: measure where it acts, or from another side.';
+const kRemedy = 'The readings are hardly sensitive to it: measure where it acts, or from another side.';
 
 function NotVisible({ effects }) {
   if (!effects?.length) return null;

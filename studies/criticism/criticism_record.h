@@ -92,6 +92,8 @@ struct CampaignRecord {
   int band_of = 0;              ///< readings on which it acts; 0: names stand beside it, or nothing was drawn
 };
 
+using Campaigns = std::vector<CampaignRecord>;
+
 void to_json(nlohmann::json& json, const CampaignRecord& record);
 void from_json(const nlohmann::json& json, CampaignRecord& record);
 

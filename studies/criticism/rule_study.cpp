@@ -9,7 +9,7 @@
 #include "volcal/identify/criticism/data/search_rules.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/studies/criticism/criticism_campaign.h"
-#include "volcal/studies/criticism/criticism_figures.h"
+#include "volcal/studies/criticism/criticism_outcome.h"
 #include "volcal/studies/criticism/criticism_plan.h"
 #include "volcal/studies/files/finished_campaigns.h"
 

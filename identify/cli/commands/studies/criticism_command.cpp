@@ -14,6 +14,7 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/studies/criticism/criticism.h"
 #include "volcal/studies/criticism/criticism_campaign.h"
+#include "volcal/studies/criticism/criticism_detection.h"
 #include "volcal/studies/criticism/criticism_figures.h"
 #include "volcal/studies/criticism/criticism_plan.h"
 #include "volcal/studies/files/simulation_writer.h"

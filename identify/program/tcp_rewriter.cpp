@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -16,8 +15,6 @@
 namespace volcal {
 namespace {
 
-constexpr int kTcpOn = 434, kTcpOff = 490;
-constexpr std::string_view kTcpLetters = "XYZABC";
 constexpr double kLever = 0.1;          // m, at which turns count as displacements
 constexpr double kShareOfSplits = 0.5;  // of the tolerance
 constexpr double kShareOfTcpJumps = 0.25;
@@ -48,82 +45,9 @@ constexpr std::array kTcpCodes = std::to_array<std::pair<int, TcpPlace>>({
     {940, TcpPlace::Anywhere}, {980, TcpPlace::Anywhere},
 });
 
-/// Without blanks, comments and a block number, in upper case.
-std::string bare(std::string_view line) {
-  std::string text;
-  bool comment = false;
-  for (const char c : line) {
-    if (c == ';') break;
-    if (c == '(' && text.find("TRAORI") == std::string::npos) comment = true;
-    if (!comment && !std::isspace(static_cast<unsigned char>(c)))
-      text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    if (c == ')') comment = false;
-  }
-  if (text.size() > 1 && text[0] == 'N' && std::isdigit(static_cast<unsigned char>(text[1])) != 0) {
-    const std::size_t end = text.find_first_not_of("0123456789", 1);
-    text = end == std::string::npos ? std::string() : text.substr(end);
-  }
-  return text;
-}
-
-bool is_traori(const std::string& text) { return text == "TRAORI" || text == "TRAORI(1)"; }
-bool is_trafoof(const std::string& text) { return text == "TRAFOOF"; }
-
 bool is_stop(int m) { return m == 0 || m == 10 || m == 20 || m == 300 || m == 600; }
 
 }  // namespace
-
-std::optional<TcpBegin> tcp_begin(std::string_view line) {
-  const std::string text = bare(line);
-  if (text.starts_with("TRAORI")) return TcpBegin::ByName;
-  const std::size_t at = text.find("G43.4");
-  if (at == std::string::npos) return std::nullopt;
-  const bool longer = at + 5 < text.size() && std::isdigit(static_cast<unsigned char>(text[at + 5])) != 0;
-  return longer ? std::nullopt : std::optional(TcpBegin::ByCode);
-}
-
-/// What a block says.
-struct TcpRewriter::Words {
-  std::vector<int> g, m;  ///< tenths
-  std::array<std::optional<double>, 26> value;
-  bool on = false, off = false;
-  bool by_name = false;  ///< TRAORI, TRAFOOF
-
-  bool has(char letter) const { return value[static_cast<std::size_t>(letter - 'A')].has_value(); }
-  double of(char letter) const { return *value[static_cast<std::size_t>(letter - 'A')]; }
-  bool has_g(int code) const { return std::ranges::find(g, code) != g.end(); }
-  bool moves() const {
-    return std::ranges::any_of(kTcpLetters, [this](char letter) { return has(letter); });
-  }
-
-  Words(std::string_view line, const NcPlace& place, NcBlock& block) {
-    const std::string text = bare(line);
-    by_name = is_traori(text) || is_trafoof(text);
-    on = is_traori(text);
-    off = is_trafoof(text);
-    if (by_name) {
-      block = NcBlock{};
-      block.text = line;
-      return;
-    }
-    if (text.starts_with("TRA"))
-      place.refuse("the transformation " + text.substr(0, 40) + " is not followed",
-                   "TRAORI and TRAFOOF are, each in a block of its own");
-    parse_block(line, place, block);
-    for (const NcWord& word : block.words) add(word, place);
-    on = has_g(kTcpOn);
-    off = has_g(kTcpOff);
-  }
-
- private:
-  void add(const NcWord& word, const NcPlace& place) {
-    if (word.letter == 'G') return g.push_back(word.code());
-    if (word.letter == 'M') return m.push_back(word.code());
-    auto& of_letter = value[static_cast<std::size_t>(word.letter - 'A')];
-    if (of_letter) place.refuse(fmt::format("{} stands twice", word.letter), "write it once, or two blocks");
-    of_letter = word.value;
-  }
-};
 
 TcpRewriter::TcpRewriter(const Machine& machine, JointErrorSource errors, NcSetup setup,
                          FunctionalPoint functional_point, TcpRewriteOptions options, std::string file)
@@ -154,7 +78,7 @@ Eigen::Vector3d TcpRewriter::origin() const {
   return *work + functional_point_.lengths_from;
 }
 
-void TcpRewriter::follow_settings(const Words& words, const NcBlock& block) {
+void TcpRewriter::follow_settings(const TcpWords& words, const NcBlock& block) {
   if (block.deletable)
     place().refuse("the block is skipped or run by the control's block-delete switch",
                    "take the / or the block out");
@@ -181,7 +105,7 @@ void TcpRewriter::follow_settings(const Words& words, const NcBlock& block) {
                      "write positions of X, Y, Z and the rotary axes, or take it out");
   }
   if (words.has_g(40) && words.moves())
-    place().refuse("coordinates stand beside G4", "write them in two blocks");
+    place().refuse("coordinates in the block of G4", "write them in two blocks");
   for (const char letter : kTcpLetters) {
     if (words.has(letter) && !is_tcp_axis(letter))
       place().refuse(fmt::format("the machine has no axis {}", letter),
@@ -191,7 +115,7 @@ void TcpRewriter::follow_settings(const Words& words, const NcBlock& block) {
     place().refuse("H belongs to no code of the block", "take it out");
 }
 
-void TcpRewriter::begin_mode(const Words& words) {
+void TcpRewriter::begin_mode(const TcpWords& words) {
   if (tcp_ != nullptr) place().refuse("tool centre point motion is active already", "end it by G49 first");
   Eigen::Vector3d offset = functional_point_.without_length;
   if (!words.by_name) {
@@ -214,7 +138,7 @@ void TcpRewriter::begin_mode(const Words& words) {
 }
 
 /// Outside the mode the axes go where they are sent; the rotary ones are kept in mind.
-void TcpRewriter::rapid_outside(const Words& words) {
+void TcpRewriter::rapid_outside(const TcpWords& words) {
   if (motion_ != 0)
     place().refuse("a feed motion stands outside tool centre point motion",
                    "write it behind G43.4 H or TRAORI; a program of X, Y and Z with the rotary axes at 0 is "
@@ -228,7 +152,7 @@ void TcpRewriter::rapid_outside(const Words& words) {
   ++summary_.copied_rapids;
 }
 
-void TcpRewriter::set_target(const Words& words) {
+void TcpRewriter::set_target(const TcpWords& words) {
   if (unit_ == 0.0)
     place().refuse("the unit of length is not known here", "write G21 or G20 before it, or give --units");
   from_ = to_;
@@ -403,7 +327,7 @@ void TcpRewriter::note_errors(const std::vector<Node>& nodes) {
   }
 }
 
-void TcpRewriter::move(const Words& words, const NcBlock& block) {
+void TcpRewriter::move(const TcpWords& words, const NcBlock& block) {
   if (motion_ == kNoCode)
     place().refuse("coordinates stand without G0 or G1", "write the G code of the motion");
   set_target(words);
@@ -454,7 +378,7 @@ std::string TcpRewriter::coordinates(const Node& node) {
 }
 
 /// The block's text with the first node in place of its coordinates, then a line per further node.
-void TcpRewriter::write_block(const Words& words, const NcBlock& block, const std::vector<Node>& nodes) {
+void TcpRewriter::write_block(const TcpWords& words, const NcBlock& block, const std::vector<Node>& nodes) {
   const bool stops = std::ranges::any_of(words.m, is_stop);
   if (stops && nodes.size() > 1)
     place().refuse("the block stops the program and must become several lines",
@@ -504,7 +428,7 @@ void TcpRewriter::rewrite(std::string_view line, const Sink& sink) {
     if (ended_) {
       written_.emplace_back(line);
     } else {
-      const Words words(line, place(), block);
+      const TcpWords words(line, place(), block);
       if (block.percent) {
         ended_ = percent_seen_;
         percent_seen_ = true;

@@ -25,12 +25,9 @@
 #include "volcal/identify/program/nc_rewriter.h"
 #include "volcal/identify/program/sample_shares.h"
 #include "volcal/identify/program/tcp_machine.h"
+#include "volcal/identify/program/tcp_words.h"
 
 namespace volcal {
-
-enum class TcpBegin { ByCode, ByName };  ///< G43.4 H, TRAORI
-/// Nothing where a line does not begin tool centre point motion.
-std::optional<TcpBegin> tcp_begin(std::string_view line);
 
 struct TcpRewriteOptions {
   double tolerance = 0.5e-6;  ///< of the corrected path, m; of rotary positions a tenth of a metre away
@@ -83,13 +80,12 @@ class TcpRewriter {
     double t = 0.0;
     TcpPose sent;
   };
-  struct Words;
 
-  void follow_settings(const Words& words, const NcBlock& block);
-  void begin_mode(const Words& words);
-  void move(const Words& words, const NcBlock& block);
-  void rapid_outside(const Words& words);
-  void set_target(const Words& words);
+  void follow_settings(const TcpWords& words, const NcBlock& block);
+  void begin_mode(const TcpWords& words);
+  void move(const TcpWords& words, const NcBlock& block);
+  void rapid_outside(const TcpWords& words);
+  void set_target(const TcpWords& words);
   void split_block(const Node& begin, const Node& end, std::vector<Node>& nodes);
   void split(double t_from, const Node& from, double t_to, const Node& to, int depth,
              std::vector<Node>& nodes);
@@ -98,7 +94,7 @@ class TcpRewriter {
   Node node_at(double t);
   ApproachDirection directions_at(double t);
   void require_reachable(const TcpPose& sent) const;
-  void write_block(const Words& words, const NcBlock& block, const std::vector<Node>& nodes);
+  void write_block(const TcpWords& words, const NcBlock& block, const std::vector<Node>& nodes);
   std::string coordinates(const Node& node);
   void note_errors(const std::vector<Node>& nodes);
   void note_node(const Node& node);

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 #include <utility>
 
+#include "volcal/identify/noise/reading_order.h"
 #include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
@@ -14,8 +14,6 @@ namespace {
 
 constexpr Eigen::Index kWhite = 0, kDrift = 1, kTau = 2, kLine = 3, kPerMetre = 4, kParameters = 5;
 
-constexpr std::size_t kLeastObservations = 30;  // fewer: white alone
-constexpr std::size_t kLeastLines = 4;
 constexpr double kLeastSpreadOfLength = 1.05;
 constexpr double kBendOfScale = 0.1;  // of the residuals' standard deviation: where log1p turns from linear
 constexpr double kLargestShare = 30.0;
@@ -40,74 +38,6 @@ constexpr double kSurrogateTolerance = 1e-3;
 constexpr double kSpread = 3.0;  // of a logarithm before any reading: where the likelihood is flat
 
 constexpr Eigen::Index parameter_of(int term) { return term == 0 ? kDrift : term == 1 ? kLine : kPerMetre; }
-
-struct TimeScale {
-  double usual_gap = 0.0;
-  double longest = 0.0;
-};
-
-TimeScale time_scale(const NoiseData& data) {
-  TimeScale scale;
-  std::vector<double> gaps;
-  for (const NoiseSequence& sequence : data.sequences) {
-    std::vector<double> time = sequence.time;
-    std::ranges::sort(time);
-    if (time.size() < 2) continue;
-    scale.longest = std::max(scale.longest, time.back() - time.front());
-    for (std::size_t i = 1; i < time.size(); ++i) {
-      if (time[i] > time[i - 1]) gaps.push_back(time[i] - time[i - 1]);
-    }
-  }
-  if (gaps.empty()) return {};
-  std::ranges::nth_element(gaps, gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2));
-  scale.usual_gap = gaps[gaps.size() / 2];
-  return scale;
-}
-
-/// Lines of several readings in sequences of several lines.
-bool has_lines(const NoiseData& data) {
-  std::size_t useful = 0;
-  for (const NoiseSequence& sequence : data.sequences) {
-    std::map<std::int32_t, std::size_t> readings;
-    for (const std::int32_t line : sequence.line) ++readings[line];
-    useful += static_cast<std::size_t>(
-        std::ranges::count_if(readings, [](const auto& entry) { return entry.second > 1; }));
-  }
-  return useful >= kLeastLines;
-}
-
-/// Half the mean squared difference of successive readings, or of successive visits of a point.
-double half_squared_difference(const NoiseData& data, const std::vector<std::int64_t>& point,
-                               const Eigen::VectorXd& residual) {
-  double successive = 0.0, returning = 0.0;
-  std::size_t successions = 0, returns = 0;
-  for (const NoiseSequence& sequence : data.sequences) {
-    std::vector<std::size_t> order(sequence.observation.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    if (!sequence.time.empty()) {
-      std::ranges::stable_sort(order, {}, [&](std::size_t k) { return sequence.time[k]; });
-    }
-    std::map<std::int64_t, double> last;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const std::size_t observation = sequence.observation[order[i]];
-      const double now = residual(static_cast<Eigen::Index>(observation));
-      if (i > 0) {
-        const std::size_t before = sequence.observation[order[i - 1]];
-        successive += std::pow(now - residual(static_cast<Eigen::Index>(before)), 2);
-        ++successions;
-      }
-      if (point.empty() || point[observation] < 0) continue;
-      const auto visited = last.find(point[observation]);
-      if (visited != last.end()) {
-        returning += std::pow(now - visited->second, 2);
-        ++returns;
-      }
-      last[point[observation]] = now;
-    }
-  }
-  if (returns >= kLeastObservations) return 0.5 * returning / static_cast<double>(returns);
-  return successions > 0 ? 0.5 * successive / static_cast<double>(successions) : 0.0;
-}
 
 }  // namespace
 

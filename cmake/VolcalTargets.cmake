@@ -101,7 +101,7 @@ function(volcal_position_independent target)
 endfunction()
 
 function(volcal_optimise_little target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Og>)
 endfunction()
 
 # Sources named *_avx2.cpp and *_avx512.cpp are compiled for these instruction sets (x86-64 only); the

@@ -6,6 +6,8 @@
 #include <set>
 #include <string>
 
+#include "volcal/identify/errors/conditions.h"
+#include "volcal/identify/errors/machine_effects.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/parallel_axes.h"
 #include "volcal/model/description/unknowns.h"
@@ -47,30 +49,42 @@ bool moves_origin(const Machine& machine, const Alignment& alignment) {
          });
 }
 
-/// Names of the blocks of what adds the same at a pose wherever the origin is: constant reversals, and
-/// surfaces and expressions, whose positions are those that the control commands, not counted from home.
-std::set<std::string> without_origin(const FitResult& result) {
+/// Names of the blocks of surfaces and expressions: their positions are those that the control commands, not
+/// counted from home.
+std::set<std::string> by_commanded_positions(const FitResult& result) {
   std::set<std::string> names;
   for (const EffectSpec& spec : result.identified.effects) {
     const EffectKind* kind = find_effect(spec.kind);
     if (kind == nullptr) continue;
     const std::unique_ptr<Effect> effect = kind->make(spec, result.identified.file);
     if (effect->surface() != nullptr) names.insert(surface_name(*effect));
-    if (!effect->changes_with_any_driver() && !effect->constant_reversal()) continue;
+    if (!effect->changes_with_any_driver()) continue;
     for (const EffectAmplitude& amplitude : effect->amplitudes()) names.insert(amplitude.label);
     for (const EffectShape& shape : effect->shapes()) names.insert(shape.label);
   }
   return names;
 }
 
+/// Parameters of effects that are the same at every position, as a reversal or a growth with a temperature.
+std::set<int> without_position(const FitResult& result) {
+  const Tool tool = result.machine.tools.empty() ? Tool{} : result.machine.tools.front();
+  const MachineEffects effects(result, tool, default_conditions(result));
+  std::set<int> parameters;
+  for (const EffectColumn& column : effects.columns()) {
+    if (effects.reach(column.effect).positions() == 0) parameters.insert(column.parameter);
+  }
+  return parameters;
+}
+
 void check_parameters(const FitResult& result, bool origin_moves) {
   if (!origin_moves) return;
-  const std::set<std::string> carried = without_origin(result);
+  const std::set<std::string> commanded = by_commanded_positions(result);
+  const std::set<int> anywhere = without_position(result);
   for (const ParameterBlock& block : result.layout.blocks) {
     const bool refers_to_origin =
         block.kind == ParameterKind::Expansion ||
         ((block.kind == ParameterKind::Effect || block.kind == ParameterKind::EffectShape) &&
-         !carried.contains(block.name));
+         !commanded.contains(block.name) && !anywhere.contains(block.offset));
     if (refers_to_origin)
       throw InputError({}, block.name + " refers to the origin that the fit had",
                        "change home_mm in the machine file and fit again, or leave the origin where it is");

@@ -396,13 +396,6 @@ MachineEffects::MachineEffects(const FitResult& result, const Tool& tool, const 
 const EffectName& MachineEffects::name(std::size_t i) const { return shared_->effects[i].effect->name(); }
 const std::string& MachineEffects::label(std::size_t effect) const { return shared_->effects[effect].label; }
 const EffectReach& MachineEffects::reach(std::size_t effect) const { return shared_->effects[effect].reach; }
-std::array<bool, kAxisCount> MachineEffects::directed_axes() const {
-  std::array<bool, kAxisCount> directed{};
-  for (const std::size_t effect : used_) {
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis) directed[axis] |= reach(effect).direction[axis];
-  }
-  return directed;
-}
 std::size_t MachineEffects::effect_count() const { return shared_->effects.size(); }
 bool MachineEffects::is_surface(std::size_t effect) const {
   return shared_->effects[effect].effect->surface() != nullptr;

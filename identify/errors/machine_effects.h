@@ -67,8 +67,6 @@ class MachineEffects {
   const EffectName& name(std::size_t effect) const;
   const std::string& label(std::size_t effect) const;
   const EffectReach& reach(std::size_t effect) const;
-  /// Whether the direction of approach of each axis makes a difference to one of these effects.
-  std::array<bool, kAxisCount> directed_axes() const;
   std::size_t effect_count() const;
   /// Numbers of the effects that are asked for here: of a subset() those of the subset.
   std::span<const std::size_t> numbers() const { return used_; }

@@ -79,6 +79,11 @@ std::string shown_unit(const std::string& edge_unit) {
   return with_raised_powers(shown);
 }
 
+std::string axis_letter_of(const MachineError& error) {
+  const std::optional<AxisName> axis = error.axis();
+  return axis ? axis_letter(*axis) : "";
+}
+
 const Observability* find_observability(const FitResult& result, const MachineError& error) {
   const auto found = std::ranges::find(result.rank.errors, error, &Observability::symbol);
   return found == result.rank.errors.end() ? nullptr : &*found;

@@ -1,6 +1,7 @@
 #pragma once
 /// Numbers as the report writes them: edge units, few digits, so that the page stays small.
 
+#include <string>
 #include <vector>
 
 #include "volcal/identify/report/page.h"
@@ -20,6 +21,8 @@ Json rounded_vector(const Eigen::Vector3d& vector, double factor, int digits = 5
 /// Edge units of an axis's position per m or rad.
 double position_factor(AxisName axis);
 std::string axis_letter(AxisName axis);
+/// Of the axis of an error with a symbol; empty for an effect.
+std::string axis_letter_of(const MachineError& error);
 /// Unit as printed: "um/m/K" becomes "µm/(m K)", "urad/mm3" becomes "µrad/mm³".
 std::string shown_unit(const std::string& edge_unit);
 

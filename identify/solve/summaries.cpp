@@ -80,7 +80,7 @@ double mean_uncertainty(const Campaign& campaign, const FitResult& result, const
 
 void complete_observability(const Campaign& campaign, FitResult& result) {
   for (Observability& figure : result.rank.errors) {
-    if (figure.symbol.location()) figure.effective_parameters = figure.visible ? 1.0 : 0.0;
+    if (!figure.symbol.motion()) figure.effective_parameters = figure.visible ? 1.0 : 0.0;
     for (const FunctionSummary& function : result.functions) {
       if (figure.symbol == function.symbol) figure.effective_parameters = function.effective_parameters;
     }

@@ -126,9 +126,6 @@ class Effect {
   virtual Eigen::MatrixXd faded_drivers(const SetupView& /*view*/) const { return {}; }
   /// Whether its driver is an expression of what EffectName::driver lists: it changes where any of that does.
   virtual bool changes_with_any_driver() const { return false; }
-  /// The error motion whose two directions of approach its amplitude tells apart, the same everywhere; absent
-  /// for all other effects.
-  virtual std::optional<ErrorSymbol> constant_reversal() const { return std::nullopt; }
   /// Readings of a setup on which the effect acts, but whose driver was not recorded.
   virtual std::size_t unrecorded(const SetupView& /*view*/) const { return 0; }
 

@@ -33,14 +33,12 @@ class FormulaEffect final : public Effect {
   void count_unrecorded(Count count) { unrecorded_ = std::move(count); }
   void scan_by(Scan scan) { scan_ = std::move(scan); }
   void be_expression() { expression_ = true; }
-  void be_constant_reversal(ErrorSymbol symbol) { reversal_ = symbol; }
 
   void check(const Campaign& campaign, const SourcePlace& place) const override { check_(campaign, place); }
   Eigen::MatrixXd drivers(const SetupView& view, const Eigen::VectorXd& shape) const override {
     return formula_(view, shape);
   }
   bool changes_with_any_driver() const override { return expression_; }
-  std::optional<ErrorSymbol> constant_reversal() const override { return reversal_; }
   std::size_t unrecorded(const SetupView& view) const override { return unrecorded_ ? unrecorded_(view) : 0; }
   std::vector<Eigen::VectorXd> scan(const Campaign& campaign) const override {
     return scan_ ? scan_(campaign) : Effect::scan(campaign);
@@ -52,7 +50,6 @@ class FormulaEffect final : public Effect {
   Check check_;
   Count unrecorded_;
   bool expression_ = false;
-  std::optional<ErrorSymbol> reversal_;
 };
 
 class FormulaKind final : public EffectKind {

@@ -53,7 +53,7 @@ class VolumeOfParts {
     fields_.resize(parts_.size());
     VolumeMoments moments(result.parameters.size());
     const std::vector<VolumePoint> poses =
-        turned_.empty() ? volume_poses(result.machine, field_.effects().directed_axes(), cells_per_axis)
+        turned_.empty() ? volume_poses(result.machine, field_.effects(), cells_per_axis)
                         : turned_volume_poses(result.machine, turned_, cells_per_axis);
     for (const VolumePoint& pose : poses) {
       add(pose.position, pose.direction);

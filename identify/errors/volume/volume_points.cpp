@@ -82,6 +82,32 @@ class SpreadRotaryAxes {
   double step_ = 0.0;
 };
 
+using AxesByName = std::array<bool, kAxisCount>;
+
+/// Axes that are not `directed` are approached from -.
+std::vector<VolumePoint> linear_poses(const Machine& machine, const AxesByName& directed,
+                                      int cells_per_axis) {
+  const std::vector<AxisName> axes = machine.linear_axes();
+  std::vector<VolumePoint> poses;
+  const auto add_approaches_of = [&](const AxisPosition& place, bool inside) {
+    const std::size_t first = poses.size();
+    poses.push_back({place, {}, inside});
+    for (const AxisName axis : axes) {
+      const std::size_t a = index_of(axis);
+      for (std::size_t i = first; i < poses.size(); ++i) poses[i].direction[a] = -1;
+      if (!directed[a]) continue;
+      for (std::size_t i = first, end = poses.size(); i < end; ++i) {
+        poses.push_back(poses[i]);
+        poses.back().direction[a] = 1;
+      }
+    }
+  };
+  for (const AxisPosition& place : spread_places(machine, axes, cells_per_axis))
+    add_approaches_of(place, true);
+  for (const AxisPosition& place : ends_of_travel(machine, axes)) add_approaches_of(place, false);
+  return poses;
+}
+
 }  // namespace
 
 Eigen::Vector3d movable_directions(const Machine& machine) {
@@ -137,34 +163,21 @@ std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axi
   return points;
 }
 
-std::vector<VolumePoint> volume_poses(const Machine& machine, const std::array<bool, kAxisCount>& directed,
+std::vector<VolumePoint> volume_poses(const Machine& machine, const MachineEffects& effects,
                                       int cells_per_axis) {
-  const std::vector<AxisName> axes = machine.linear_axes();
-  std::vector<VolumePoint> poses;
-  const auto add_approaches_of = [&](const AxisPosition& place, bool inside) {
-    const std::size_t first = poses.size();
-    poses.push_back({place, {}, inside});
-    for (const AxisName axis : axes) {
-      const std::size_t a = index_of(axis);
-      for (std::size_t i = first; i < poses.size(); ++i) poses[i].direction[a] = -1;
-      if (!directed[a]) continue;
-      for (std::size_t i = first, end = poses.size(); i < end; ++i) {
-        poses.push_back(poses[i]);
-        poses.back().direction[a] = 1;
-      }
-    }
-  };
-  for (const AxisPosition& place : spread_places(machine, axes, cells_per_axis))
-    add_approaches_of(place, true);
-  for (const AxisPosition& place : ends_of_travel(machine, axes)) add_approaches_of(place, false);
-  return poses;
+  AxesByName directed{};
+  for (const std::size_t effect : effects.numbers()) {
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+      directed[axis] |= effects.reach(effect).direction[axis];
+  }
+  return linear_poses(machine, directed, cells_per_axis);
 }
 
 std::vector<VolumePoint> turned_volume_poses(const Machine& machine, const std::vector<AxisName>& turned,
                                              int cells_per_axis) {
-  std::array<bool, kAxisCount> directed;
+  AxesByName directed;
   directed.fill(true);
-  std::vector<VolumePoint> poses = volume_poses(machine, directed, cells_per_axis);
+  std::vector<VolumePoint> poses = linear_poses(machine, directed, cells_per_axis);
   const SpreadRotaryAxes rotary(machine, turned);
   for (std::size_t i = 0; i < poses.size(); ++i) rotary.place(i, poses[i].position, poses[i].direction);
   return poses;

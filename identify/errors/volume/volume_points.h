@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "volcal/identify/errors/machine_effects.h"
 #include "volcal/identify/errors/pose.h"
 #include "volcal/model/description/machine.h"
 
@@ -40,9 +41,9 @@ struct VolumePoint {
 /// spread_places() of X, Y, Z and after them ends_of_travel(), each approached from + and - in all
 /// combinations.
 std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis);
-/// The same of all linear axes, parallel ones too, for errors to which the direction of `directed` axes makes
-/// a difference: others are approached from -.
-std::vector<VolumePoint> volume_poses(const Machine& machine, const std::array<bool, kAxisCount>& directed,
+/// The same of all linear axes, parallel ones too, for errors with these effects: axes whose direction makes
+/// no difference to them are approached from -.
+std::vector<VolumePoint> volume_poses(const Machine& machine, const MachineEffects& effects,
                                       int cells_per_axis);
 /// The same with rotary axes `turned`: they take a position of their own at each of these places and
 /// directions of approach, spread evenly over their travel; others stand at 0.

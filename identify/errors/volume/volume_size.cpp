@@ -11,8 +11,8 @@
 namespace volcal {
 namespace {
 
-constexpr double kFarthest = 8.0;        // u: a draw beyond it is not expected in 10^14
-constexpr double kUndetermined = 1e-14;  // of the largest eigenvalue of the moments
+constexpr double kFarthest = 8.0;            // u: a draw beyond it is not expected in 10^14
+constexpr double kNegligibleMoment = 1e-14;  // of the largest eigenvalue of the moments
 
 using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
@@ -38,8 +38,7 @@ class PosesOfVolume {
   PosesOfVolume(const FitResult& result, const Tool& tool, const Conditions& conditions, int cells_per_axis)
       : covariance_(result.covariance), moments_(result.layout.size + 1) {
     const ErrorField field(result, tool, conditions);
-    for (const VolumePoint& pose :
-         volume_poses(result.machine, field.effects().directed_axes(), cells_per_axis)) {
+    for (const VolumePoint& pose : volume_poses(result.machine, field.effects(), cells_per_axis)) {
       const Eigen::Vector3d place = place_of(result.machine, pose.position);
       poses_.push_back(rows_of(field, pose, place));
       if (pose.inside) moments_.add(place, poses_.back().all(parameters()));
@@ -112,7 +111,7 @@ Root root_of(const Eigen::MatrixXd& moments, const Eigen::MatrixXd& covariance) 
   const Eigen::VectorXd u = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const SymmetricEigen eigen =
       eigen_decomposition(u.asDiagonal() * moments.topLeftCorner(parameters, parameters) * u.asDiagonal());
-  const double least = kUndetermined * eigen.values.maxCoeff();
+  const double least = kNegligibleMoment * eigen.values.maxCoeff();
   std::vector<Eigen::Index> kept;
   for (Eigen::Index k = 0; k < parameters; ++k) {
     if (eigen.values[k] > least) kept.push_back(k);

@@ -11,6 +11,7 @@
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/detectable_groups.h"
+#include "volcal/identify/result/error_unit.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
@@ -188,13 +189,13 @@ std::string planned_errors_table(const CampaignPlan& plan) {
                               "with the plan",
                               kCoverageFactor));
   for (const Observability& error : plan.plan.result.rank.errors) {
-    if (!error.symbol.has_symbol()) continue;
-    std::vector<std::string> cells = {error.symbol.name(), error.symbol.is_angle() ? "urad" : "um"};
+    const ErrorUnit unit = unit_of(plan.plan.result, error.symbol);
+    std::vector<std::string> cells = {error.symbol.name(), unit.name};
     for (const ExpectedCampaign* each : all) {
       const Observability* own = error_of(*each, error.symbol);
       cells.push_back(own == nullptr  ? "-"
                       : !own->visible ? "not visible"
-                                      : fixed_number(kCoverageFactor * own->u_rms * kPerMicro, 3));
+                                      : fixed_number(kCoverageFactor * own->u_rms / unit.si_per_unit, 3));
     }
     const Observability* before = error_of(*all[1], error.symbol);
     const bool both = before != nullptr && before->visible && error.visible;

@@ -7,7 +7,11 @@
 
 #include <cmath>
 #include <random>
+#include <set>
+#include <string>
 
+#include "tests/support/effect_campaign.h"
+#include "tests/support/effect_results.h"
 #include "tests/support/five_axis.h"
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
@@ -222,6 +226,47 @@ TEST(Alignment, CarriesSurfacesAndExpressions) {
           << code;
     }
   }
+}
+
+Eigen::VectorXd errors_at(const FitResult& result, const PointSet& set, const Tool& tool) {
+  const ErrorField field(result, tool);
+  Eigen::VectorXd all(3 * static_cast<Eigen::Index>(set.positions.size()));
+  for (std::size_t i = 0; i < set.positions.size(); ++i) {
+    const auto sign = [i](std::size_t axis) -> std::int8_t { return ((i >> axis) & 1U) != 0 ? 1 : -1; };
+    all.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+        field.at(set.positions[i], {sign(0), sign(1), sign(2)}).head<3>();
+  }
+  return all;
+}
+
+/// Every effect that an origin does not refuse: what it adds is then the same wherever the origin is.
+TEST(Alignment, CarriesEffectsThatAreTheSameAtEveryPosition) {
+  std::mt19937_64 random(19);
+  const Campaign campaign = testing_support::effect_campaign("w X' b Y Z t");
+  std::set<std::string> carried, refused;
+  for (const EffectKind* kind : effect_kinds()) {
+    for (const EffectSpec& spec : kind->examples(campaign)) {
+      const MeasurementModel model(campaign, testing_support::model_with(spec));
+      const FitResult result = testing_support::result_of_model(model, random);
+      if (ErrorField(result, result.machine.tools[0]).effects().empty()) continue;
+      const Alignment alignment{
+          .datum = result.machine.datum, .origin = AxisPosition{0.1, 0.15, 0.12}, .spindle_tilt = {}};
+      try {
+        const FitResult aligned = align_result(result, alignment).result;
+        const PointSet set = random_points(random, 16);
+        const Eigen::VectorXd change = errors_at(aligned, set, aligned.machine.tools[0]) -
+                                       errors_at(result, set, result.machine.tools[0]);
+        EXPECT_LT((set.rest * change).norm(), 2e-9) << spec.kind;  // products of errors of 20 urad
+        EXPECT_GT(change.norm(), 1e-6);
+        carried.insert(spec.kind);
+      } catch (const InputError&) {
+        refused.insert(spec.kind);
+      }
+    }
+  }
+  for (const char* kind : {"reversal", "common-reversal", "custom"})
+    EXPECT_TRUE(carried.contains(kind)) << kind;
+  EXPECT_TRUE(refused.contains("scale-stretch") || refused.contains("position-reversal"));
 }
 
 /// Where the frame has gone and came back, nothing has changed but by rounding.

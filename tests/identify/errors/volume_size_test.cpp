@@ -15,14 +15,14 @@ namespace {
 
 using testing_support::machine_of;
 
-constexpr int kCells = 4;
+constexpr int kFewCells = 4;
 
 /// `d`: a deviation of the parameters, which the budget of a result that has it is asked about.
 void expect_size_of_budget(const FitResult& result, const VolumeSize& size, const Eigen::VectorXd& d) {
   FitResult shifted = result;
   shifted.parameters += d;
   const BudgetLine wanted =
-      error_budget(shifted, shifted.machine.tools[0], {}, kCells, RotaryPoses::AtRest).total;
+      error_budget(shifted, shifted.machine.tools[0], {}, kFewCells, RotaryPoses::AtRest).total;
   const VolumeSize::Sizes sizes = size.sizes((size.rows() * d).transpose());
   EXPECT_NEAR(sizes.rms[0], wanted.rms, 1e-12);
   EXPECT_NEAR(sizes.largest[0], wanted.max, 1e-12);
@@ -31,9 +31,9 @@ void expect_size_of_budget(const FitResult& result, const VolumeSize& size, cons
 /// `root`: of the covariance.
 void expect_sizes_of_budgets(FitResult result, const Eigen::MatrixXd& root) {
   result.covariance = root * root.transpose();
-  const VolumeSize size(result, result.machine.tools[0], {}, kCells);
+  const VolumeSize size(result, result.machine.tools[0], {}, kFewCells);
   const BudgetLine total =
-      error_budget(result, result.machine.tools[0], {}, kCells, RotaryPoses::AtRest).total;
+      error_budget(result, result.machine.tools[0], {}, kFewCells, RotaryPoses::AtRest).total;
   EXPECT_NEAR(size.rms(), total.rms, 1e-12);
   EXPECT_NEAR(size.largest(), total.max, 1e-12);
   EXPECT_NEAR(size.u(), total.u_rms, 1e-9 * total.u_rms);
@@ -78,7 +78,7 @@ TEST(VolumeSize, IsThatOfTheBudgetWhereNoErrorWasFound) {
   const auto none = [](double) { return 0.0; };
   FitResult result = testing::result_with(machine, {.functions = {{"EXX", none}, {"EBY", none}}}, 5);
   result.covariance.diagonal().setConstant(1e-12);
-  const VolumeSize size(result, machine.tools[0], {}, kCells);
+  const VolumeSize size(result, machine.tools[0], {}, kFewCells);
   EXPECT_EQ(size.rms(), 0.0);
   EXPECT_EQ(size.largest(), 0.0);
   EXPECT_TRUE(size.rms_row().isZero(0.0));
@@ -91,9 +91,9 @@ TEST(VolumeSize, IsThatOfTheBudgetWhereNoErrorWasFound) {
 TEST(VolumeSize, NeedsFewQuantitiesWhereErrorsAreKnownWell) {
   std::mt19937_64 random(3);
   FitResult result = testing_support::random_result(machine_of("wX'bYZt"), random);
-  const Eigen::Index before = VolumeSize(result, result.machine.tools[0], {}, kCells).rows().rows();
+  const Eigen::Index before = VolumeSize(result, result.machine.tools[0], {}, kFewCells).rows().rows();
   result.covariance *= 1e-6;
-  const Eigen::Index after = VolumeSize(result, result.machine.tools[0], {}, kCells).rows().rows();
+  const Eigen::Index after = VolumeSize(result, result.machine.tools[0], {}, kFewCells).rows().rows();
   EXPECT_LT(after, before);
   EXPECT_LE(after, result.layout.size + 9);
 }

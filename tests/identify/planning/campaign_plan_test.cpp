@@ -139,6 +139,22 @@ TEST(CampaignPlan, PlansForWhatItsReadingsShow) {
   EXPECT_EQ(model.effects.size(), 2u);
 }
 
+/// Beside the error motions, in the unit of its amplitude.
+TEST(CampaignPlan, ListsTheAmplitudesThatItDetermines) {
+  CampaignPlan plan;
+  plan.settings = small_plan();
+  plan.settings.model.effects = {effect_spec("position-reversal", {{"symbol", std::string("EXX")}})};
+  const PlanLayout textbook = textbook_layout(plan.settings, LineOfSight(plan.settings));
+  plan.textbook = expected_campaign("textbook", campaign_of(textbook, plan.settings), plan.settings, false);
+  plan.plan = plan.textbook;
+  plan.searched.layout = textbook;
+  const Observability& amplitude = plan.plan.result.rank.errors.back();
+  ASSERT_FALSE(amplitude.symbol.has_symbol());
+  EXPECT_TRUE(amplitude.visible);
+  EXPECT_EQ(amplitude.effective_parameters, 1.0);
+  EXPECT_THAT(plan_text(plan), ::testing::ContainsRegex(amplitude.symbol.name() + " +um/m "));
+}
+
 /// A mistake is none of these.
 TEST(CampaignPlan, RefusesAnEffectOfAToolThatTheMachineLacks) {
   PlanSettings settings = small_plan();

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "tests/io/report/drawing.h"
+#include "tests/io/report/page_data.h"
 #include "tests/io/report/synthetic_fit.h"
 #include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/errors/volume/volumetric.h"
@@ -28,20 +29,13 @@ namespace volcal {
 namespace {
 
 using Json = nlohmann::json;
+using test::page_data;
 
 std::string file_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();
-}
-
-Json page_data(const Json& document, const std::string& kind) {
-  for (const Json& page : document.at("pages")) {
-    if (page.at("kind") == kind) return page.at("data");
-  }
-  ADD_FAILURE() << "no page " << kind;
-  return {};
 }
 
 class ReportTest : public ::testing::Test {
@@ -399,37 +393,6 @@ TEST_F(ReportTest, ItsHeadSaysWhatMadeIt) {
   const Json facts = page_data(page, "summary").at("facts");
   EXPECT_THAT(facts, ::testing::Contains(Json({"Identified by", "volcal 9.8.7, 2024-05-17T10:00:00Z"})));
   EXPECT_THAT(facts, ::testing::Contains(Json({"Command", "volcal fit c.toml -o r"})));
-}
-
-/// EAX has no function, but a reversal of 8 urad: half of it either way.
-TEST(ReportOfAReversal, AnErrorWithoutAFunctionIsNotLeftOut) {
-  test::SyntheticFit fit = test::synthetic_fit();
-  FitResult& result = fit.result;
-  ParameterBlock reversal;
-  reversal.kind = ParameterKind::Effect;
-  reversal.name = "reversal EAX";
-  reversal.labels = {""};
-  reversal.units = {"urad"};
-  reversal.si_per_unit = {1e-6};
-  reversal.offset = result.layout.size++;
-  reversal.guess = reversal.prior_mean = reversal.prior_sigma = Eigen::VectorXd::Zero(1);
-  result.layout.blocks.push_back(reversal);
-  EffectSpec effect;
-  effect.kind = "reversal";
-  effect.options.set("symbol", std::string("EAX"));
-  result.identified.effects.push_back(effect);
-  result.parameters.conservativeResize(result.layout.size);
-  result.parameters[reversal.offset] = 8e-6;
-  result.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(result.layout.size, result.layout.size));
-  const Json function =
-      page_data(Json::parse(report_json(result, fit.campaign)), "functions").at("functions").at(3);
-  ASSERT_EQ(function.at("symbol"), "EAX");
-  EXPECT_EQ(function.at("state"), "identified");
-  EXPECT_TRUE(function.at("knots").empty());
-  ASSERT_EQ(function.at("curves").size(), 2u);
-  EXPECT_EQ(function.at("curves").at(0).at("direction"), -1);
-  EXPECT_EQ(function.at("curves").at(0).at("value").at(40), -4.0);
-  EXPECT_EQ(function.at("curves").at(1).at("value").at(0), 4.0);
 }
 
 /// Z was parked between the table's positions: nothing of its errors was measured where the table looks.

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <optional>
 #include <string>
 
 #include "tests/support/machines.h"
@@ -51,14 +50,6 @@ TEST(Reversal, TargetsItsSymbolInItsUnit) {
   EXPECT_EQ(length->amplitudes()[0].target.symbol, (ErrorSymbol{Component::Y, AxisName::Y}));
   EXPECT_EQ(length->name(), (EffectName{"reversal", "EYY", "dir_y", "step"}));
   EXPECT_EQ(made_reversal(reversal_of("ECX"))->amplitudes()[0].unit(), "urad");
-}
-
-TEST(Reversal, AloneSaysWhichMotionItIsAConstantReversalOf) {
-  EXPECT_EQ(made_reversal(reversal_of("EYY"))->constant_reversal(), (ErrorSymbol{Component::Y, AxisName::Y}));
-  EffectSpec along_the_travel = reversal_of("EYY");
-  along_the_travel.kind = "position-reversal";
-  EXPECT_EQ(find_effect("position-reversal")->make(along_the_travel, "model.toml")->constant_reversal(),
-            std::nullopt);
 }
 
 TEST(Reversal, TakesTheValueOfAnIdentifiedModel) {

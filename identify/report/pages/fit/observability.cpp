@@ -3,6 +3,7 @@
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/text/fit_summary.h"
 #include "volcal/identify/report/values/correlation.h"
+#include "volcal/identify/result/error_unit.h"
 #include "volcal/identify/words/sentences.h"
 
 namespace volcal::report {
@@ -12,12 +13,13 @@ Json error_rows(const FitResult& result) {
   Json rows = Json::array();
   for (const Observability& error : result.rank.errors) {
     const Explanation words = explanation(error.cause);
+    const ErrorUnit unit = unit_of(result, error.symbol);
     rows.push_back({{"symbol", error.symbol.name()},
-                    {"axis", std::string(1, error.symbol.name().back())},
-                    {"unit", error.symbol.is_angle() ? "µrad" : "µm"},
+                    {"axis", axis_letter_of(error.symbol)},
+                    {"unit", shown_unit(unit.name)},
                     {"visible", error.visible},
                     {"visible_fraction", rounded(error.visible_fraction, 4)},
-                    {"u_rms", rounded(error.u_rms * kPerMicro, 3)},
+                    {"u_rms", rounded(error.u_rms / unit.si_per_unit, 3)},
                     {"effective_parameters", rounded(error.effective_parameters, 3)},
                     {"reason", words.reason},
                     {"remedy", words.remedy}});

@@ -36,7 +36,6 @@ std::unique_ptr<FormulaEffect> make_reversal(const EffectTable& table) {
       [symbol, label](const Campaign& campaign, const SourcePlace& place) {
         check_axis(campaign, symbol.axis, label, place);
       });
-  effect->be_constant_reversal(symbol);
   effect->count_unrecorded([symbol](const SetupView& view) {
     const auto& direction = view.setup.readings.direction[index_of(symbol.axis)];
     return direction.empty() ? view.rows()

@@ -30,20 +30,11 @@ constexpr double kHardlyTilted = 1e-7;  // rad
 constexpr double kTcpTravelRounding = 1e-9;
 constexpr double kWholeTurns = 2.0 * std::numbers::pi - 1e-6;
 
-/// G codes that are followed, in tenths: in the mode, outside it, or both.
-enum class TcpPlace { Anywhere, Inside, Outside };
-constexpr std::array kTcpCodes = std::to_array<std::pair<int, TcpPlace>>({
-    {0, TcpPlace::Anywhere},   {10, TcpPlace::Anywhere},  {40, TcpPlace::Anywhere},
-    {170, TcpPlace::Anywhere}, {180, TcpPlace::Anywhere}, {190, TcpPlace::Anywhere},
-    {200, TcpPlace::Anywhere}, {210, TcpPlace::Anywhere}, {400, TcpPlace::Anywhere},
-    {430, TcpPlace::Outside},  {434, TcpPlace::Outside},  {490, TcpPlace::Anywhere},
-    {530, TcpPlace::Outside},  {540, TcpPlace::Anywhere}, {550, TcpPlace::Anywhere},
-    {560, TcpPlace::Anywhere}, {570, TcpPlace::Anywhere}, {580, TcpPlace::Anywhere},
-    {590, TcpPlace::Anywhere}, {591, TcpPlace::Anywhere}, {592, TcpPlace::Anywhere},
-    {593, TcpPlace::Anywhere}, {610, TcpPlace::Anywhere}, {640, TcpPlace::Anywhere},
-    {800, TcpPlace::Anywhere}, {900, TcpPlace::Anywhere}, {930, TcpPlace::Anywhere},
-    {940, TcpPlace::Anywhere}, {980, TcpPlace::Anywhere},
-});
+/// G codes that are followed, in tenths.
+constexpr std::array kTcpCodes = {0,   10,  40,  170, 180, 190, 200, 210, 400, 430, 434, 490, 530, 540, 550,
+                                  560, 570, 580, 590, 591, 592, 593, 610, 640, 800, 900, 930, 940, 980};
+/// Those of them that are followed outside the mode alone.
+constexpr std::array kOutsideTcp = {430, 434, 530};
 
 bool is_stop(int m) { return m == 0 || m == 10 || m == 20 || m == 300 || m == 600; }
 
@@ -83,10 +74,9 @@ void TcpRewriter::follow_settings(const TcpWords& words, const NcBlock& block) {
     place().refuse("the block is skipped or run by the control's block-delete switch",
                    "take the / or the block out");
   for (const int code : words.g) {
-    const auto* const known = std::ranges::find(kTcpCodes, code, &std::pair<int, TcpPlace>::first);
+    const auto is_among = [code](const auto& codes) { return std::ranges::find(codes, code) != codes.end(); };
     const bool inside = tcp_ != nullptr;
-    const bool right = known != kTcpCodes.end() && !(inside && known->second == TcpPlace::Outside) &&
-                       !(!inside && known->second == TcpPlace::Inside);
+    const bool right = is_among(kTcpCodes) && !(inside && is_among(kOutsideTcp));
     if (!right)
       place().refuse(fmt::format("{} is not followed {} tool centre point motion", g_code_name(code),
                                  inside ? "in" : "in a program with"),

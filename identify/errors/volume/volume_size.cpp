@@ -161,12 +161,14 @@ VolumeSize::VolumeSize(const FitResult& result, const Tool& tool, const Conditio
 }
 
 VolumeSize::Sizes VolumeSize::sizes(const Eigen::Ref<const Eigen::MatrixXd>& values) const {
-  const auto square = [&](Eigen::Index k) { return (values.col(k).array() + offset_[k]).square(); };
   Eigen::ArrayXd mean_square = Eigen::ArrayXd::Constant(values.rows(), rest_);
-  for (Eigen::Index k = 0; k < of_rms_; ++k) mean_square += square(k);
-  Eigen::ArrayXd most = Eigen::ArrayXd::Zero(values.rows());
-  for (Eigen::Index k = of_rms_; k < values.cols(); k += 3)
-    most = most.max(square(k) + square(k + 1) + square(k + 2));
+  for (Eigen::Index k = 0; k < of_rms_; ++k) mean_square += (values.col(k).array() + offset_[k]).square();
+  Eigen::ArrayXd most = Eigen::ArrayXd::Zero(values.rows()), square(values.rows());
+  for (Eigen::Index first = of_rms_; first < values.cols(); first += 3) {
+    square.setZero();
+    for (Eigen::Index k = first; k < first + 3; ++k) square += (values.col(k).array() + offset_[k]).square();
+    most = most.max(square);
+  }
   return {mean_square.max(0.0).sqrt(), most.sqrt()};
 }
 

@@ -65,7 +65,7 @@ TEST(RigidCompromise, IsTheLeastSquaresOne) {
   };
   const Axis& z = result.machine.axis(AxisName::Z);
   const double middle_z = z.travel_min + 0.5 * z.travel();
-  const auto left_at = [&](const AxisPosition& q) {
+  const auto left_at = [&](const AxisPosition& q) -> Vector3d {
     return displacements.coupled(q, {}) - compromise.at(q, {});
   };
   double size = 0.0;

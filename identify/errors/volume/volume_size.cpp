@@ -4,9 +4,11 @@
 #include <cmath>
 #include <vector>
 
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/errors/volume/volume_moments.h"
 #include "volcal/identify/errors/volume/volume_points.h"
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/model/kinematics/chain.h"
 
 namespace volcal {
 namespace {
@@ -38,8 +40,14 @@ class PosesOfVolume {
   PosesOfVolume(const FitResult& result, const Tool& tool, const Conditions& conditions, int cells_per_axis)
       : covariance_(result.covariance), moments_(result.layout.size + 1) {
     const ErrorField field(result, tool, conditions);
-    for (const VolumePoint& pose : volume_poses(result.machine, field.effects(), cells_per_axis)) {
-      const Eigen::Vector3d place = place_of(result.machine, pose.position);
+    const KinematicChain chain(result.machine);
+    const std::vector<AxisName> turned = identified_rotary_axes(result);
+    const std::vector<VolumePoint> poses = turned.empty()
+                                               ? volume_poses(result.machine, field.effects(), cells_per_axis)
+                                               : turned_volume_poses(result.machine, turned, cells_per_axis);
+    for (const VolumePoint& pose : poses) {
+      const Eigen::Vector3d place = turned.empty() ? place_of(result.machine, pose.position)
+                                                   : chain.nominal_point_w(pose.position, tool.offset);
       poses_.push_back(rows_of(field, pose, place));
       if (pose.inside) moments_.add(place, poses_.back().all(parameters()));
     }

@@ -1,7 +1,7 @@
 #pragma once
-/// Root mean square and largest error of a volume as they vary with the parameters of a fit: at the poses
-/// where budgets, tables and reports judge it (volume_points.h), rotary axes at 0, after the best rigid
-/// motion. The error of a pose is e_i + R_i d, d the deviation of the parameters from the fit.
+/// Root mean square and largest error of a volume as they vary with the parameters of a fit: at the poses of
+/// error_budget(), rotary axes with errors over their travel, after the best rigid motion. The error of a
+/// pose is e_i + R_i d, d the deviation of the parameters from the fit.
 ///
 /// The mean square d^T M d + 2 b^T d + a follows from the moments of the volume (volume_moments.h). With
 /// M = L L^T it is |L^T d + c|^2 and a constant: no more linear quantities than parameters, however many

@@ -21,8 +21,7 @@ constexpr int kFewCells = 4;
 void expect_size_of_budget(const FitResult& result, const VolumeSize& size, const Eigen::VectorXd& d) {
   FitResult shifted = result;
   shifted.parameters += d;
-  const BudgetLine wanted =
-      error_budget(shifted, shifted.machine.tools[0], {}, kFewCells, RotaryPoses::AtRest).total;
+  const BudgetLine wanted = error_budget(shifted, shifted.machine.tools[0], {}, kFewCells).total;
   const VolumeSize::Sizes sizes = size.sizes((size.rows() * d).transpose());
   EXPECT_NEAR(sizes.rms[0], wanted.rms, 1e-12);
   EXPECT_NEAR(sizes.largest[0], wanted.max, 1e-12);
@@ -32,8 +31,7 @@ void expect_size_of_budget(const FitResult& result, const VolumeSize& size, cons
 void expect_sizes_of_budgets(FitResult result, const Eigen::MatrixXd& root) {
   result.covariance = root * root.transpose();
   const VolumeSize size(result, result.machine.tools[0], {}, kFewCells);
-  const BudgetLine total =
-      error_budget(result, result.machine.tools[0], {}, kFewCells, RotaryPoses::AtRest).total;
+  const BudgetLine total = error_budget(result, result.machine.tools[0], {}, kFewCells).total;
   EXPECT_NEAR(size.rms(), total.rms, 1e-12);
   EXPECT_NEAR(size.largest(), total.max, 1e-12);
   EXPECT_NEAR(size.u(), total.u_rms, 1e-9 * total.u_rms);
@@ -56,6 +54,13 @@ TEST(VolumeSize, IsThatOfTheBudgetWhateverTheParameters) {
     const Eigen::Index size = result.layout.size;
     expect_sizes_of_budgets(result, 1e-6 * test::random_matrix(random, size, size));
   }
+}
+
+TEST(VolumeSize, IsOverTheTravelOfRotaryAxesWithErrors) {
+  std::mt19937_64 random(4);
+  const FitResult result = testing_support::random_result(machine_of("wC'A'bXYZt"), random);
+  const Eigen::Index size = result.layout.size;
+  expect_sizes_of_budgets(result, 1e-7 * test::random_matrix(random, size, size));
 }
 
 TEST(VolumeSize, KnowsBothDirectionsOfApproach) {

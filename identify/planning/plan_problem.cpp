@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <stdexcept>
+#include <utility>
 
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/numeric/dense.h"
@@ -16,6 +19,7 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/functions/registry.h"
+#include "volcal/model/kinematics/chain.h"
 #include "volcal/model/kinematics/rotary_datum.h"
 
 namespace volcal {
@@ -62,27 +66,73 @@ Eigen::Vector3d probe_place_w(const LineOfSight& sight) {
   return among_positions ? corner_w - kApart * Eigen::Vector3d::Ones() - sight.swept_w().sizes() : corner_w;
 }
 
-/// First row of every setup.
-Campaign thinned(const Campaign& campaign) {
-  Campaign thin = campaign;
-  for (Setup& setup : thin.setups) {
-    Readings& all = setup.readings;
-    const auto keep_first = [](auto& column) {
-      if (column.size() > 1) column.erase(column.begin() + 1, column.end());
-    };
-    for (auto& column : all.position) keep_first(column);
-    for (auto& column : all.direction) keep_first(column);
-    for (auto& column : all.value) keep_first(column);
-    for (auto& [name, column] : all.temperature) keep_first(column);
-    keep_first(all.sigma);
-    keep_first(all.time);
-    keep_first(all.line);
-    keep_first(all.run);
-    keep_first(all.feed);
-    keep_first(all.source_line);
-    setup.left_out.clear();
+/// Row numbers, ascending: first and last row and the one farthest from the first, which give a setup its
+/// direction; with `of_passes` the first row of every line and of every run, too.
+std::set<std::size_t> rows_of_unknowns(const Setup& setup, const Machine& machine, bool of_passes) {
+  const Readings& all = setup.readings;
+  if (all.size() == 0) return {};
+  const KinematicChain chain(machine);
+  const auto point_w = [&](std::size_t row) {
+    return chain.nominal_point_w(all.commanded_position(row), machine.tools[setup.tool].offset);
+  };
+  const Eigen::Vector3d start_w = point_w(0);
+  std::size_t farthest = 0;
+  double reach = 0.0;
+  for (std::size_t row = 1; row < all.size(); ++row) {
+    const double distance = (point_w(row) - start_w).norm();
+    if (distance <= reach) continue;
+    reach = distance;
+    farthest = row;
   }
-  return thin;
+  std::set<std::size_t> rows = {0, farthest, all.size() - 1};
+  if (!of_passes) return rows;
+  for (const std::vector<std::int32_t>* passes : {&all.line, &all.run}) {
+    std::set<std::int32_t> seen;
+    for (std::size_t row = 0; row < passes->size(); ++row) {
+      if (seen.insert((*passes)[row]).second) rows.insert(row);
+    }
+  }
+  return rows;
+}
+
+void keep_rows(const std::set<std::size_t>& rows, Setup& setup) {
+  Readings& all = setup.readings;
+  const auto keep = [&rows](auto& column) {
+    if (column.empty()) return;
+    std::size_t kept = 0;
+    for (const std::size_t row : rows) column[kept++] = column[row];
+    column.resize(kept);
+  };
+  for (auto& column : all.position) keep(column);
+  for (auto& column : all.direction) keep(column);
+  for (auto& column : all.value) keep(column);
+  for (auto& column : all.given) keep(column);
+  for (auto& [name, column] : all.temperature) keep(column);
+  keep(all.sigma);
+  keep(all.time);
+  keep(all.line);
+  keep(all.run);
+  keep(all.feed);
+  keep(all.source_line);
+  setup.left_out.clear();
+}
+
+std::vector<std::pair<std::string, int>> unknowns_of(const Campaign& campaign, const ModelSpec& model) {
+  std::vector<std::pair<std::string, int>> unknowns;
+  const MeasurementModel bound(campaign, model);
+  for (const ParameterBlock& block : bound.layout().blocks) unknowns.emplace_back(block.name, block.size());
+  return unknowns;
+}
+
+/// As few rows of every setup as bring along the same unknowns as all do.
+Campaign thinned(const Campaign& campaign, const ModelSpec& model) {
+  const auto unknowns = unknowns_of(campaign, model);
+  for (const bool of_passes : {false, true}) {
+    Campaign thin = campaign;
+    for (Setup& setup : thin.setups) keep_rows(rows_of_unknowns(setup, thin.machine, of_passes), setup);
+    if (unknowns_of(thin, model) == unknowns) return thin;
+  }
+  return campaign;
 }
 
 /// A surface is as large as the model states it; without coefficients as it starts.
@@ -160,7 +210,7 @@ struct PlanProblem::Linearised {
 PlanProblem::PlanProblem(const PlanSettings& settings) : settings_(settings), model_(search_model()) {
   use_single_threaded_blas();
   both_directions_ = !model_.effects.empty();
-  if (settings.existing != nullptr) thin_ = thinned(*settings.existing);
+  if (settings.existing != nullptr) thin_ = thinned(*settings.existing, model_);
   learn_machine();
   if (settings.existing != nullptr) learn_existing();
 }
@@ -365,7 +415,9 @@ Eigen::MatrixXd PlanProblem::known(const Linearised& at) const {
   std::vector<Eigen::Index> place;
   for (Eigen::Index k = 0; k < machine_size_; ++k) place.push_back(k);
   for (const std::string& name : existing_names_) {
-    place.push_back(machine_size_ + (std::ranges::find(names, name) - names.begin()));
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end()) throw std::logic_error("plan: unknown " + name + " is in no planned campaign");
+    place.push_back(machine_size_ + (found - names.begin()));
   }
   for (Eigen::Index i = 0; i < existing_.rows(); ++i) {
     for (Eigen::Index j = 0; j < existing_.cols(); ++j) {

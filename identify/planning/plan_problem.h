@@ -68,7 +68,7 @@ class PlanProblem {
   Eigen::Index machine_size_ = 0;      ///< reduced parameters that do not come from setups; they lead
   Eigen::MatrixXd machine_precision_;  ///< of them, without readings
   std::unique_ptr<DesignCriterion> criterion_;
-  Campaign thin_;                            ///< existing setups with one reading each: their parameters
+  Campaign thin_;                            ///< existing setups with few readings: their unknowns
   std::vector<std::string> existing_names_;  ///< of reduced parameters behind the machine's
   Eigen::MatrixXd existing_;                 ///< information of the existing readings
 };

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/io/campaign/campaign_on_machine.h"
 #include "volcal/identify/io/plan_writer.h"
 #include "volcal/identify/planning/campaign_plan.h"
 #include "volcal/identify/planning/registry.h"
@@ -51,7 +52,7 @@ void set_target(const std::string& target, const std::vector<py::object>& separa
 CampaignPlan plan_of(const Machine& machine, const Model* model, std::optional<int> readings,
                      std::optional<double> time_h, int stations, const std::vector<std::string>& tools,
                      const std::string& instrument, const std::string& minimise,
-                     const std::vector<py::object>& separate, const std::shared_ptr<Campaign>& campaign,
+                     const std::vector<py::object>& separate, const std::shared_ptr<Campaign>& given,
                      bool extend, std::optional<double> bar_mm, std::optional<double> bar_sigma_um,
                      std::uint64_t seed, int threads, const py::object& progress) {
   PlanSettings settings;
@@ -69,17 +70,20 @@ CampaignPlan plan_of(const Machine& machine, const Model* model, std::optional<i
   settings.costs.reading = plan_instrument_of(settings).usual_reading_time();
   settings.seed = seed;
   settings.threads = threads;
-  if (extend && campaign == nullptr) throw InputError({}, "there is no campaign to extend", "give campaign=");
+  std::optional<Campaign> campaign;
+  if (given != nullptr) campaign = campaign_on_machine(*given, machine);
+  const Campaign* with = campaign ? &*campaign : nullptr;
+  if (extend && !campaign) throw InputError({}, "there is no campaign to extend", "give campaign=");
   settings.linear_axes_known =
       model == nullptr && !extend && plan_instrument_of(settings).turns_rotary_axes();
   if (settings.linear_axes_known) settings.model = with_known_linear_axes(settings.model, machine);
   check_plan_settings(settings);
-  set_target(minimise, separate, campaign.get(), settings);
-  if (extend) settings.existing = campaign.get();
+  set_target(minimise, separate, with, settings);
+  if (extend) settings.existing = with;
   settings.progress = progress_to(progress);
   return without_lock([&] {
-    CampaignPlan plan = extend ? extend_campaign(settings) : plan_campaign(settings, campaign.get());
-    if (campaign != nullptr) plan.notes = campaign->notes;
+    CampaignPlan plan = extend ? extend_campaign(settings) : plan_campaign(settings, with);
+    if (campaign) plan.notes = campaign->notes;
     plan.settings.progress = nullptr;
     plan.settings.existing = nullptr;
     return plan;

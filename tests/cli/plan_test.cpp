@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/support/program.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
 
 namespace volcal {
 namespace {
@@ -168,6 +169,69 @@ TEST(Plan, RefusesBadInput) {
   refused(kMachine + " --readings 100 --spindle-mm 5000", "no station sees the positions");
   refused(kMachine + " --readings 100 --elevation-deg 84,85", "no station sees the positions");
   refused("nowhere.toml --readings 100", "nowhere.toml");
+}
+
+/// mixed-1 of the examples, with its machine file rewritten in a folder.
+class PlanOfAnotherMachineFile : public ::testing::Test {
+ protected:
+  std::string machine_with(const std::string& before, const std::string& after) const {
+    std::string text = content(example("machine.toml"));
+    const std::size_t at = text.find(before);
+    EXPECT_NE(at, std::string::npos) << before;
+    text.replace(at, before.size(), after);
+    std::string file = (scratch_.path() / "machine.toml").string();
+    std::ofstream(file) << text;
+    return file;
+  }
+
+  static std::string example(const std::string& name) {
+    return std::string(VOLCAL_SOURCE_DIR) + "/datasets/examples/mixed-1/" + name;
+  }
+
+  static void expect_refused(const std::string& machine, const std::string& words) {
+    for (const char* option : {"--with ", "--extend --with ", "--verify "}) {
+      const auto run =
+          run_program("plan " + machine + " --readings 100 " + option + example("campaign.toml"));
+      EXPECT_EQ(run.exit_code, 2) << option << run.output;
+      EXPECT_THAT(run.errors, HasSubstr(words)) << option;
+      EXPECT_THAT(run.errors, HasSubstr("give the machine file of the campaign, ")) << option;
+    }
+  }
+
+  testing::ScratchFolder scratch_;
+};
+
+TEST_F(PlanOfAnotherMachineFile, IsRefused) {
+  const std::string other = "the campaign's machine is not the one that is given: ";
+  expect_refused(machine_with("w X' Y' b Z t", "w X' b Y Z t"), other + "structure");
+  expect_refused(machine_with("reference_point_mm = [0.0, 0.0, 0.0]", "reference_point_mm = [9.0, 0.0, 0.0]"),
+                 other + "reference point of X");
+  expect_refused(machine_with("[tools.side_y]\noffset_mm = [-20.0, 130.0, -280.0]", ""),
+                 "the machine that is given has no tool side_y");
+  expect_refused(
+      machine_with("[110.0, 15.0, -240.0]", "[111.0, 15.0, -240.0]"),
+      "the tool side_x has the offset [110, 15, -240] mm, on the machine that is given [111, 15, -240] mm");
+}
+
+/// Displacements whose direction follows from their positions; tools in another order are the same tools.
+TEST_F(PlanOfAnotherMachineFile, ExtendsDirectTestsWithTheirTools) {
+  const std::string machine = machine_with("[tools.short]\noffset_mm = [0.0, 0.0, -150.0]\n", "");
+  std::ofstream(machine, std::ios::app) << "\n[tools.short]\noffset_mm = [0.0, 0.0, -150.0]\n";
+  const std::string model = (scratch_.path() / "model.toml").string(),
+                    plan = (scratch_.path() / "plan").string();
+  std::ofstream(model) << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n[functions]\n"
+                          "default = { basis = \"legendre\", degree = 2 }\n";
+  const auto run = run_program("plan " + machine + " --model " + model + " --with " +
+                               example("campaign.toml") + " --extend --stations 1 --readings 40 -o " + plan);
+  ASSERT_EQ(run.exit_code, 0) << run.output << run.errors;
+  const Campaign before = read_campaign(example("campaign.toml"));
+  const Campaign after = read_campaign(plan + "/campaign/campaign.toml");
+  ASSERT_EQ(after.setups.size(), before.setups.size() + 1);
+  for (std::size_t i = 0; i < before.setups.size(); ++i) {
+    EXPECT_EQ(after.setups[i].name, before.setups[i].name);
+    EXPECT_EQ(after.machine.tools[after.setups[i].tool].name,
+              before.machine.tools[before.setups[i].tool].name);
+  }
 }
 
 TEST(Plan, PointsOfARunAreReadWithTheirErrors) {

@@ -294,6 +294,8 @@ class Programs(Fitted):
         self.assertEqual(plan.to_json(), said)
         self.assertGreater(plan.campaign.reading_count, 32)
         self.refused(lambda: volcal.plan(self.campaign.machine, readings=64, tools=["hammer"]), "hammer")
+        other = volcal.Machine.read(SOURCE / "datasets" / "examples" / "mixed-1" / "machine.toml")
+        self.refused(lambda: volcal.plan(other, readings=64, campaign=self.campaign), "is not the one that is given")
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/criticism/catalogue/named_effect.h"
+#include "volcal/identify/io/campaign/campaign_on_machine.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/machine_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
@@ -141,9 +142,10 @@ void read_target(const PlanArguments& arguments, const Campaign* with, PlanSetti
   }
 }
 
-PlanSettings settings_of(const PlanArguments& arguments, const std::optional<Campaign>& with) {
+PlanSettings settings_of(const PlanArguments& arguments, const Machine& machine,
+                         const std::optional<Campaign>& with) {
   PlanSettings settings = arguments.settings;
-  settings.machine = read_machine(arguments.machine);
+  settings.machine = machine;
   if (!arguments.model.empty()) settings.model = read_model(arguments.model, settings.machine);
   settings.linear_axes_known =
       arguments.model.empty() && !arguments.extend && plan_instrument_of(settings).turns_rotary_axes();
@@ -181,7 +183,7 @@ Replaceable replaceable(const PlanArguments& arguments) {
   return arguments.force ? Replaceable::Anything : Replaceable::Unedited;
 }
 
-std::optional<Campaign> given_campaign(const PlanArguments& arguments) {
+void check_campaign_options(const PlanArguments& arguments) {
   if (arguments.extend && arguments.with.empty()) {
     refuse_plan("--extend has nothing to extend",
                 "give the campaign that is measured with --with CAMPAIGN.toml");
@@ -191,9 +193,12 @@ std::optional<Campaign> given_campaign(const PlanArguments& arguments) {
   }
   if (!arguments.verify.empty() && !arguments.with.empty())
     refuse_plan("--verify and --with name two campaigns", "give one of them");
+}
+
+std::optional<Campaign> given_campaign(const PlanArguments& arguments, const Machine& machine) {
   const std::string& file = arguments.verify.empty() ? arguments.with : arguments.verify;
   if (file.empty()) return std::nullopt;
-  return read_campaign(file);
+  return campaign_on_machine(read_campaign(file), machine);
 }
 
 void write_plan(const PlanArguments& arguments, const CampaignPlan& plan, const std::string& json) {
@@ -214,8 +219,10 @@ int run_plan(const PlanArguments& arguments, const CLI::App& app) {
                           {arguments.machine, arguments.model, arguments.with, arguments.verify},
                           replaceable(arguments));
   }
-  const std::optional<Campaign> with = given_campaign(arguments);
-  PlanSettings settings = settings_of(arguments, with);
+  check_campaign_options(arguments);
+  const Machine machine = read_machine(arguments.machine);
+  const std::optional<Campaign> with = given_campaign(arguments, machine);
+  PlanSettings settings = settings_of(arguments, machine, with);
   ProgressBar bar("plan");
   settings.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
   CampaignPlan plan =

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <string>
 
@@ -43,8 +44,34 @@ class CompensatedCampaign : public ::testing::Test {
     return nlohmann::json::parse(run.output).at("rms_before_um");
   }
 
+  /// Simulates the machine again with the result's tables active.
+  void measure_with_tables(const std::string& tables, const std::string& campaign) const {
+    run("tables " + path("result") + " --format neutral-csv -o " + path(tables));
+    run("simulate " + path("study.toml") + " --compensation " + path(tables) + " -o " + path(campaign));
+  }
+  nlohmann::json validated(const std::string& result, const std::string& campaign,
+                           const std::string& options) const {
+    const auto run = run_program("validate " + path(result) + " " + path(campaign) + " --json " + options);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    return nlohmann::json::parse(run.output);
+  }
+
   testing::SimulatedCampaign simulated_;
 };
+
+/// A campaign file with the guess of every station moved by as much along X, Y and Z.
+std::string with_moved_guesses(const std::string& campaign, double millimetres) {
+  const std::regex station(R"(station_mm = \[([^,]+), ([^,]+), ([^\]]+)\])");
+  std::string text;
+  auto rest = campaign.cbegin();
+  for (std::sregex_iterator found(campaign.begin(), campaign.end(), station), end; found != end; ++found) {
+    text.append(rest, (*found)[0].first).append("station_mm = [");
+    for (const std::size_t k : {1U, 2U, 3U})
+      text += std::to_string(std::stod((*found)[k]) + millimetres) + (k < 3 ? ", " : "]");
+    rest = (*found)[0].second;
+  }
+  return text.append(rest, campaign.cend());
+}
 
 TEST_F(CompensatedCampaign, IsMeasuredAgainIdentifiedAndSuperimposed) {
   run("tables " + path("result") + " --format neutral-csv --type L-POS -o " + path("positioning"));
@@ -111,6 +138,18 @@ TEST_F(CompensatedCampaign, IsAskedForByTheStudyToo) {
                                    " -o " + path("x"));
   EXPECT_EQ(foreign.exit_code, 2);
   EXPECT_THAT(foreign.errors, HasSubstr("holds no tables"));
+}
+
+TEST_F(CompensatedCampaign, IsJudgedAlikeWhereverItsStationsWereGuessed) {
+  measure_with_tables("tables", "after");
+  const std::string campaign = content(path("after/campaign.toml"));
+  std::ofstream(path("after/moved.toml")) << with_moved_guesses(campaign, 60.0);
+  ASSERT_NE(content(path("after/moved.toml")), campaign);
+  const auto near = validated("result", "after/campaign.toml", "--tables " + path("tables"));
+  const auto far = validated("result", "after/moved.toml", "--tables " + path("tables"));
+  EXPECT_LT(near.at("reduced_chi2").get<double>(), 1.3);
+  for (const char* figure : {"rms_before_um", "rms_after_um", "max_after_um", "reduced_chi2"})
+    EXPECT_NEAR(far.at(figure).get<double>(), near.at(figure).get<double>(), 0.002) << figure;
 }
 
 /// docs/studies.md has all formats on full campaigns.

@@ -76,8 +76,8 @@ void write_validation(const ValidateArguments& arguments, const Campaign& campai
 /// them.
 std::optional<MeasuredError> verify(const ValidateArguments& arguments, Campaign& campaign) {
   if (arguments.tables.empty()) return {};
-  MeasuredError measured = measured_error(campaign);
-  campaign = without_corrections(std::move(campaign), active_tables(arguments.tables));
+  MeasuredError measured = measured_error(campaign, arguments.threads);
+  campaign = without_corrections(std::move(campaign), active_tables(arguments.tables), arguments.threads);
   return measured;
 }
 

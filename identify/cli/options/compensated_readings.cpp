@@ -35,10 +35,10 @@ CompensationTables active_tables(const std::string& folder) {
   return active.format->read(active.files);
 }
 
-Campaign without_corrections(Campaign campaign, const CompensationTables& tables) {
+Campaign without_corrections(Campaign campaign, const CompensationTables& tables, int threads) {
   const Campaign measured = campaign;
   const MeasurementModel model(measured, frozen_model(nominal_model()));
-  const Eigen::VectorXd parameters = model.initial_parameters();
+  const Eigen::VectorXd parameters = evaluate_model(measured, nominal_model(), nullptr, threads).parameters;
   MeasurementModel::DisturbanceRows rows;
   for (std::size_t setup = 0; setup < campaign.setups.size(); ++setup) {
     Readings& readings = campaign.setups[setup].readings;

@@ -14,7 +14,8 @@ CompensationTables active_tables(const std::string& folder);
 
 /// What the same readings would be without the tables: less what their corrections of all axes moved, to
 /// first order. Angles of a direct measurement lose what rotary axes were turned by and nothing else, since
-/// the linear axes' corrections turn nothing (11.3 b).
-Campaign without_corrections(Campaign campaign, const CompensationTables& tables);
+/// the linear axes' corrections turn nothing (11.3 b). Stations, centres and alignments are those that the
+/// readings give: guesses of them may be far off.
+Campaign without_corrections(Campaign campaign, const CompensationTables& tables, int threads = 0);
 
 }  // namespace volcal::cli

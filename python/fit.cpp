@@ -11,6 +11,7 @@
 #include "volcal/python/model.h"
 #include "volcal/python/result.h"
 #include "volcal/python/shared/arrays.h"
+#include "volcal/python/shared/findings.h"
 #include "volcal/python/shared/long_work.h"
 
 namespace volcal::python {
@@ -80,6 +81,7 @@ py::dict validation_figures(const Campaign& campaign, const Result& result, int 
   dict["angle_readings"] = figures.angles;
   dict["reduced_chi2"] = figures.reduced_chi2;
   dict["coverage95"] = figures.coverage95;
+  dict["findings"] = findings_of(differing_compensations(campaign, result.result));
   return dict;
 }
 
@@ -111,7 +113,8 @@ void define_fit(py::module_& module) {
              "max_after, m; "
              "angle_..., rad; readings, angle_readings: counts; reduced_chi2; coverage95: share of readings "
              "within the "
-             "95 % interval, 0 to 1. Raises InputError.");
+             "95 % interval, 0 to 1; findings: whether other compensations were active than while the errors "
+             "were identified. Raises InputError.");
 }
 
 }  // namespace volcal::python

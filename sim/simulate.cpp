@@ -216,6 +216,7 @@ SimulatedCampaign simulate(const Study& study) {
   simulated.campaign = readout.with_noise(simulated.truth, interference);
   simulated.campaign.active_compensations = study.compensation.description;
   simulated.validation = validation_campaign(study, simulated.truth, known, simulated.plans);
+  simulated.validation.active_compensations = study.compensation.description;
   for (const SetupPlan& plan : simulated.plans) append_gross_errors(plan, study.seed, simulated.outliers);
   if (study.unseen || !study.hidden.empty()) {
     const StudyReadout elsewhere{study, simulated.tool_offsets, at_unseen_positions(simulated.plans)};

@@ -232,6 +232,16 @@ std::vector<Finding> missing_rotary_errors(const Campaign& campaign, const Model
   return findings;
 }
 
+std::vector<Finding> differing_compensations(const Campaign& campaign, const FitResult& identified) {
+  Finding finding{FindingCode::CompensationsDiffer};
+  if (names_compensations(campaign.active_compensations))
+    finding.data["measured"] = campaign.active_compensations;
+  if (names_compensations(identified.active_compensations))
+    finding.data["identified"] = identified.active_compensations;
+  if (finding.data.empty() || campaign.active_compensations == identified.active_compensations) return {};
+  return {finding};
+}
+
 namespace {
 
 /// Curves and surfaces that fade out at readings beyond those they were drawn from.

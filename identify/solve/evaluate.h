@@ -32,6 +32,10 @@ struct Evaluation {
 /// One per rotary axis that moves in the campaign and has no errors in a model that states some.
 std::vector<Finding> missing_rotary_errors(const Campaign& campaign, const ModelSpec& model);
 
+/// "compensation.active-differ" where other compensations were active while the campaign was measured than
+/// while the errors were identified.
+std::vector<Finding> differing_compensations(const Campaign& campaign, const FitResult& identified);
+
 /// "errors.held-beyond-readings" of every axis on which the campaign has readings beyond model.measured, and
 /// "errors.faded-beyond-readings" of every curve or surface with readings beyond those it was drawn from.
 std::vector<Finding> held_beyond_measured(const Campaign& campaign, const ModelSpec& model);

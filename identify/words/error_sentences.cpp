@@ -156,6 +156,31 @@ std::string tables_leave_more(const Finding& finding) {
       finding.number("with").in_unit(), finding.number("without").in_unit());
 }
 
+std::string compensations_differ(const Finding& finding) {
+  if (!finding.has("measured"))
+    return fmt::format(
+        "the errors were identified with {} active, which this campaign does not state: where it was "
+        "measured without, the figures are of both together; state active_compensations in campaign.toml",
+        finding.text("identified"));
+  if (finding.has("identified"))
+    return fmt::format(
+        "these readings were taken with {} active, the errors were identified with {}: the figures are of "
+        "both together; take readings and errors with the same compensations active",
+        finding.text("measured"), finding.text("identified"));
+  return fmt::format(
+      "these readings were taken with {} active, which the errors do not know: the figures are of both "
+      "together; validate --tables takes out what tables corrected",
+      finding.text("measured"));
+}
+
+std::string compensations_unstated(const Finding& finding) {
+  return fmt::format(
+      "the campaign {}, and what the tables correct was taken out of its readings: state "
+      "active_compensations in campaign.toml, or leave --tables out where they were not active",
+      finding.has("stated") ? "states that no compensations were active"
+                            : "does not state that tables were active");
+}
+
 std::string rotary_not_in_model(const Finding& finding) {
   const std::string& axis = finding.text("axis");
   if (const std::vector<std::string> locations = finding.texts("locations"); !locations.empty())
@@ -209,6 +234,8 @@ std::span<const SentenceMaker> error_sentences() {
       {FindingCode::RotaryTablesOffIdeal, rotary_tables_off_ideal},
       {FindingCode::RotaryTablesWithoutDirections, rotary_tables_without_directions},
       {FindingCode::TablesLeaveMore, tables_leave_more},
+      {FindingCode::CompensationsDiffer, compensations_differ},
+      {FindingCode::CompensationsUnstated, compensations_unstated},
       {FindingCode::RotaryErrorsNotInModel, rotary_not_in_model},
       {FindingCode::RotaryHarmonicsHidden, harmonics_hidden},
   });

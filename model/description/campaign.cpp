@@ -1,5 +1,8 @@
 #include "volcal/model/description/campaign.h"
 
+#include <algorithm>
+#include <cctype>
+
 namespace volcal {
 
 std::array<double, kAxisCount> Readings::commanded_position(std::size_t row) const {
@@ -22,6 +25,12 @@ std::size_t Campaign::reading_count() const {
   std::size_t count = 0;
   for (const Setup& setup : setups) count += setup.readings.size() * setup.readings.channels();
   return count;
+}
+
+bool names_compensations(std::string_view active) {
+  constexpr std::string_view kNone = "none";
+  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+  return !active.empty() && !std::ranges::equal(active, kNone, same);
 }
 
 }  // namespace volcal

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "volcal/model/description/finding.h"
@@ -70,5 +71,8 @@ struct Campaign {
 
   std::size_t reading_count() const;  ///< observations: rows times channels, over all setups
 };
+
+/// Whether the words of active_compensations name some: not where nothing is stated, nor "none".
+bool names_compensations(std::string_view active);
 
 }  // namespace volcal

@@ -111,6 +111,8 @@ constexpr auto kFindingCodes = [] {
       {TablesLeaveMore, "compensation.tables-leave-more", Severity::Failure},
       {RotaryErrorsNotInModel, "errors.rotary-not-in-model", Severity::Warning},
       {RotaryHarmonicsHidden, "errors.rotary-harmonics-hidden", Severity::Note},
+      {CompensationsDiffer, "compensation.active-differ", Severity::Warning},
+      {CompensationsUnstated, "compensation.active-unstated", Severity::Warning},
   });
 }();
 static_assert(kFindingCodes.size() == static_cast<std::size_t>(FindingCode::End), "every code has one name");

@@ -107,6 +107,8 @@ enum class FindingCode : std::uint8_t {
   TablesLeaveMore,
   RotaryErrorsNotInModel,
   RotaryHarmonicsHidden,
+  CompensationsDiffer,
+  CompensationsUnstated,
   End,  ///< none: how many there are
 };
 

@@ -152,6 +152,47 @@ TEST_F(CompensatedCampaign, IsJudgedAlikeWhereverItsStationsWereGuessed) {
     EXPECT_NEAR(far.at(figure).get<double>(), near.at(figure).get<double>(), 0.002) << figure;
 }
 
+/// Codes of what `validate` has noticed.
+std::set<std::string> codes_of(const nlohmann::json& figures) {
+  std::set<std::string> codes;
+  for (const auto& finding : figures.value("notes_findings", nlohmann::json::array()))
+    codes.insert(finding.at("code").get<std::string>());
+  return codes;
+}
+
+TEST_F(CompensatedCampaign, IsNotTakenForOneWithoutTables) {
+  measure_with_tables("tables", "after");
+  const std::string differ = "compensation.active-differ", unstated = "compensation.active-unstated";
+  EXPECT_EQ(codes_of(validated("result", "after/campaign.toml", "")).count(differ), 1U);
+  EXPECT_EQ(codes_of(validated("result", "after/truth/campaign.toml", "")).count(differ), 1U);
+  EXPECT_EQ(codes_of(validated("result", "campaign/truth/campaign.toml", "")).count(differ), 0U);
+  const auto stated = codes_of(validated("result", "after/campaign.toml", "--tables " + path("tables")));
+  EXPECT_EQ(stated.count(differ) + stated.count(unstated), 0U);
+
+  const std::string campaign = content(path("after/campaign.toml"));
+  const std::regex statement("active_compensations = [^\n]*\n");
+  for (const char* instead : {"", "active_compensations = \"none\"\n"}) {
+    std::ofstream(path("after/other.toml")) << std::regex_replace(campaign, statement, instead);
+    const auto codes = codes_of(validated("result", "after/other.toml", "--tables " + path("tables")));
+    EXPECT_EQ(codes.count(unstated), 1U) << instead;
+    EXPECT_EQ(codes_of(validated("result", "after/other.toml", "")).count(differ), 0U) << instead;
+  }
+}
+
+TEST_F(CompensatedCampaign, OfErrorsIdentifiedWithTablesIsNotCorrectedBySuperimposedOnes) {
+  measure_with_tables("tables", "second");
+  run("fit " + path("second/campaign.toml") + " --model " + path("model.toml") + " --noise white -o " +
+      path("result-2"));
+  const auto refused = run_program("validate " + path("result-2") + " " + path("second/campaign.toml") +
+                                   " --tables " + path("tables"));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("identified with neutral-csv tables of"));
+  EXPECT_THAT(refused.errors, HasSubstr("identified without compensations"));
+  const std::string differ = "compensation.active-differ";
+  EXPECT_EQ(codes_of(validated("result-2", "second/truth/campaign.toml", "")).count(differ), 0U);
+  EXPECT_EQ(codes_of(validated("result-2", "campaign/truth/campaign.toml", "")).count(differ), 1U);
+}
+
 /// docs/studies.md has all formats on full campaigns.
 TEST(CompensationStudy, EveryFormatLeavesWhatItsIdealLeaves) {
   const auto run = run_program("study compensation -n 1 --seed 5 --small --json");

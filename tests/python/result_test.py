@@ -201,6 +201,7 @@ class Arrays(Fitted):
         figures = volcal.validate(self.campaign, self.result)
         self.assertLess(figures["rms_after"], figures["rms_before"])
         self.assertEqual(figures["readings"], 1536)
+        self.assertEqual(figures["findings"], [])
 
     def test_a_result_read_again(self) -> None:
         self.result.write(self.folder / "result", report=False)

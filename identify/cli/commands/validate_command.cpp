@@ -28,6 +28,7 @@
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal::cli {
@@ -74,8 +75,24 @@ void write_validation(const ValidateArguments& arguments, const Campaign& campai
 
 /// With tables that were active: the readings become what they are without; what the machine showed with
 /// them.
-std::optional<MeasuredError> verify(const ValidateArguments& arguments, Campaign& campaign) {
-  if (arguments.tables.empty()) return {};
+std::optional<MeasuredError> verify(const ValidateArguments& arguments, const FitResult& result,
+                                    Campaign& campaign) {
+  if (arguments.tables.empty()) {
+    std::ranges::move(differing_compensations(campaign, result), std::back_inserter(campaign.notes));
+    return {};
+  }
+  if (names_compensations(result.active_compensations))
+    throw InputError(
+        {arguments.result, 0},
+        "its errors were identified with " + result.active_compensations +
+            " active, and --tables takes out all that the tables correct, what these corrected too",
+        "give the result that was identified without compensations; or validate this one without "
+        "--tables, on a campaign measured with the same compensations active");
+  if (!names_compensations(campaign.active_compensations)) {
+    Finding unstated{FindingCode::CompensationsUnstated};
+    if (!campaign.active_compensations.empty()) unstated.data["stated"] = campaign.active_compensations;
+    campaign.notes.push_back(std::move(unstated));
+  }
   MeasuredError measured = measured_error(campaign, arguments.threads);
   campaign = without_corrections(std::move(campaign), active_tables(arguments.tables), arguments.threads);
   return measured;
@@ -106,7 +123,7 @@ int run_validate(const ValidateArguments& arguments) {
     throw InputError({arguments.campaign, 0}, "its machine is not the one that was identified: " + difference,
                      "validate on a campaign of the same machine");
   }
-  const std::optional<MeasuredError> compensated = verify(arguments, campaign);
+  const std::optional<MeasuredError> compensated = verify(arguments, result, campaign);
   for (Finding& missing : missing_rotary_errors(campaign, result.identified)) {
     missing.data["in_uncertainty"] = true;
     campaign.notes.push_back(std::move(missing));

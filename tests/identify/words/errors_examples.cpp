@@ -129,6 +129,23 @@ std::vector<WordedFinding> examples_of_errors() {
         {{"with", FindingNumber{4.26e-6, "um", 1e-6}}, {"without", FindingNumber{3.53e-6, "um", 1e-6}}}},
        "the machine errs by 4.26 um RMS with these tables and by 3.53 without: do not load them; take a "
        "finer --step, --positions or --rotary-step, a format that holds more positions, or fewer types"},
+      {{FindingCode::CompensationsDiffer, {{"measured", "L-VOL"}}},
+       "these readings were taken with L-VOL active, which the errors do not know: the figures are of both "
+       "together; validate --tables takes out what tables corrected"},
+      {{FindingCode::CompensationsDiffer, {{"measured", "L-VOL"}, {"identified", "L-POS"}}},
+       "these readings were taken with L-VOL active, the errors were identified with L-POS: the figures are "
+       "of both together; take readings and errors with the same compensations active"},
+      {{FindingCode::CompensationsDiffer, {{"identified", "L-POS"}}},
+       "the errors were identified with L-POS active, which this campaign does not state: where it was "
+       "measured without, the figures are of both together; state active_compensations in campaign.toml"},
+      {{FindingCode::CompensationsUnstated},
+       "the campaign does not state that tables were active, and what the tables correct was taken out of "
+       "its readings: state active_compensations in campaign.toml, or leave --tables out where they were "
+       "not active"},
+      {{FindingCode::CompensationsUnstated, {{"stated", "none"}}},
+       "the campaign states that no compensations were active, and what the tables correct was taken out of "
+       "its readings: state active_compensations in campaign.toml, or leave --tables out where they were "
+       "not active"},
       {{FindingCode::RotaryErrorsNotInModel, {{"axis", "C"}, {"in_uncertainty", true}}},
        "axis C moves in these readings, and the model has no errors of it: what they do is in the residuals, "
        "what they may be by their prior in the uncertainty of the model; identify them by volcal fit from "

@@ -111,6 +111,17 @@ TEST_F(Certificate, NamesItsReservations) {
   EXPECT_THAT(reservations, HasSubstr("ECZ: not visible"));
 }
 
+TEST_F(Certificate, HasAReservationWhereTheCampaignAfterStatesNoCompensations) {
+  after_ = before_;
+  for (const char* active : {"", "none", "L-POS"}) {
+    after_->active_compensations = active;
+    const std::string reservations = page("certified").at("reservations").dump();
+    EXPECT_EQ(reservations.find("does not state that compensations were active") == std::string::npos,
+              after_->active_compensations == "L-POS")
+        << active;
+  }
+}
+
 /// `printf 123456789 | cksum` prints 930766865 9.
 TEST_F(Certificate, ListsFilesWithTheChecksumsOfCksum) {
   const auto files = page("certificate_files").at("files");

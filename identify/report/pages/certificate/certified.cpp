@@ -144,6 +144,8 @@ Json certified_reservations(const CertificateView& certificate) {
     for (const std::string& text : sentences(*findings)) list.push_back(text);
   }
   for (const std::string& text : sentences(unmeasured_travel(result))) list.push_back(text);
+  if (certificate.after && !names_compensations(certificate.after->active_compensations))
+    list.push_back("The campaign measured afterwards does not state that compensations were active.");
   return list;
 }
 

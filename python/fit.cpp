@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "volcal/identify/criticism/screening.h"
 #include "volcal/identify/solve/evaluate.h"
@@ -66,8 +69,8 @@ Result fit_campaign(const std::shared_ptr<Campaign>& campaign, const Model* mode
 }
 
 py::dict validation_figures(const Campaign& campaign, const Result& result, int threads) {
-  const ValidationFigures figures =
-      without_lock([&] { return validate(campaign, result.result, threads).figures; });
+  const Validation validation = without_lock([&] { return validate(campaign, result.result, threads); });
+  const ValidationFigures& figures = validation.figures;
   py::dict dict;
   dict["rms_before"] = figures.rms_before;
   dict["rms_after"] = figures.rms_after;
@@ -81,7 +84,9 @@ py::dict validation_figures(const Campaign& campaign, const Result& result, int 
   dict["angle_readings"] = figures.angles;
   dict["reduced_chi2"] = figures.reduced_chi2;
   dict["coverage95"] = figures.coverage95;
-  dict["findings"] = findings_of(differing_compensations(campaign, result.result));
+  std::vector<Finding> findings = differing_compensations(campaign, result.result);
+  std::ranges::copy(validation.contradicted, std::back_inserter(findings));
+  dict["findings"] = findings_of(findings);
   return dict;
 }
 
@@ -105,16 +110,17 @@ void define_fit(py::module_& module) {
              "progress: called with the stage and the share of the work that is done, 0 to 1; what it raises "
              "ends the work, as "
              "does Ctrl-C when the next stage begins. Raises InputError.");
-  module.def("validate", &validation_figures, py::arg("campaign").none(false), py::arg("result"),
-             py::kw_only(), py::arg("threads") = 0,
-             "How well a result predicts a campaign, as `volcal validate`: stations and other parameters of "
-             "its setups "
-             "are estimated anew, errors are not. rms_before, max_before (nominal machine), rms_after, "
-             "max_after, m; "
-             "angle_..., rad; readings, angle_readings: counts; reduced_chi2; coverage95: share of readings "
-             "within the "
-             "95 % interval, 0 to 1; findings: whether other compensations were active than while the errors "
-             "were identified. Raises InputError.");
+  module.def(
+      "validate", &validation_figures, py::arg("campaign").none(false), py::arg("result"), py::kw_only(),
+      py::arg("threads") = 0,
+      "How well a result predicts a campaign, as `volcal validate`: stations and other parameters of "
+      "its setups "
+      "are estimated anew, errors are not. rms_before, max_before (nominal machine), rms_after, "
+      "max_after, m; "
+      "angle_..., rad; readings, angle_readings: counts; reduced_chi2; coverage95: share of readings "
+      "within the "
+      "95 % interval, 0 to 1; findings: whether other compensations were active than while the errors "
+      "were identified, stated values of the campaign that its readings contradict. Raises InputError.");
 }
 
 }  // namespace volcal::python

@@ -12,6 +12,7 @@
 #include "volcal/identify/solve/normals/stated_sigma.h"
 #include "volcal/identify/solve/residuals.h"
 #include "volcal/identify/solve/unknown_rotary_axes.h"
+#include "volcal/identify/solve/verdict.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
@@ -106,9 +107,14 @@ struct OpenErrors {
   }
 };
 
+struct PredictionUncertainty {
+  std::vector<double> readings;
+  Eigen::MatrixXd nuisance;  ///< covariance of the reduced nuisance parameters
+};
+
 /// u of every prediction: the covariance of open errors, less what the re-estimated nuisance parameters
 /// absorb. Beyond what was measured it is that of the functions there, not that of the value that is held.
-std::vector<double> prediction_uncertainty(const Prediction& prediction, const OpenErrors& open) {
+PredictionUncertainty prediction_uncertainty(const Prediction& prediction, const OpenErrors& open) {
   const ReadingIndex& index = prediction.index;
   std::optional<MeasurementModel> unheld;
   if (ModelSpec spec = index.model().spec(); !spec.measured.empty()) {
@@ -135,7 +141,7 @@ std::vector<double> prediction_uncertainty(const Prediction& prediction, const O
           std::sqrt(std::max(0.0, effective.dot(open.covariance * effective)));
     }
   }
-  return u;
+  return {std::move(u), absorbed * open.covariance * absorbed.transpose()};
 }
 
 /// Those of an identified model.
@@ -164,11 +170,11 @@ Eigen::VectorXd carried(const Eigen::VectorXd& parameters, const ParameterLayout
 }
 
 /// u of every prediction with what rotary axes may do that move here and of which the model has no errors.
-std::vector<double> uncertainty_with_unknown_axes(const Prediction& known,
-                                                  const std::vector<AxisName>& unknown,
-                                                  const FitResult& identified,
-                                                  const std::vector<double>& sigma,
-                                                  const std::vector<double>& weight, int threads) {
+PredictionUncertainty uncertainty_with_unknown_axes(const Prediction& known,
+                                                    const std::vector<AxisName>& unknown,
+                                                    const FitResult& identified,
+                                                    const std::vector<double>& sigma,
+                                                    const std::vector<double>& weight, int threads) {
   const MeasurementModel& without = known.index.model();
   const Campaign& campaign = without.campaign();
   MeasurementModel model(campaign, with_unknown_errors(campaign, without.spec(), unknown));
@@ -341,10 +347,12 @@ Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model_spec,
   if (identified == nullptr) return evaluation;
   const Prediction prediction{index, datum, prior, sums, parameters};
   const std::vector<AxisName> unknown = rotary_axes_without_errors(campaign, model.spec());
-  evaluation.model_u =
+  PredictionUncertainty u =
       unknown.empty()
           ? prediction_uncertainty(prediction, identified_errors(*identified, model.layout()))
           : uncertainty_with_unknown_axes(prediction, unknown, *identified, sigma, weight, threads);
+  evaluation.model_u = std::move(u.readings);
+  evaluation.parameters_u = datum.expand_covariance(u.nuisance).diagonal().cwiseMax(0.0).cwiseSqrt();
   return evaluation;
 }
 
@@ -404,6 +412,12 @@ Spread spread_of(const Campaign& campaign, const std::vector<ResidualRecord>& re
   return spread;
 }
 
+std::vector<Finding> contradicted_nuisance(const Evaluation& evaluation) {
+  std::vector<ParameterBlock> blocks = evaluation.layout.blocks;
+  std::erase_if(blocks, is_frozen_with_the_model);
+  return contradicted_priors(blocks, evaluation.parameters, evaluation.parameters_u);
+}
+
 }  // namespace
 
 Validation validate(const Campaign& campaign, const FitResult& result, int threads) {
@@ -413,6 +427,7 @@ Validation validate(const Campaign& campaign, const FitResult& result, int threa
   const bool is_exact =
       result.covariance.isZero(0.0) && rotary_axes_without_errors(campaign, frozen_model(model)).empty();
   validation.after = evaluate_model(campaign, model, is_exact ? nullptr : &result, threads);
+  validation.contradicted = contradicted_nuisance(validation.after);
   ValidationFigures& figures = validation.figures;
   const Spread before = spread_of(campaign, validation.before.residuals);
   const Spread after = spread_of(campaign, validation.after.residuals);

@@ -21,6 +21,8 @@ struct Evaluation {
       residuals;  ///< sigma as stated; redundancy and w against the re-estimated nuisance
   std::vector<double>
       model_u;  ///< standard uncertainty of each prediction by the model, SI; 0 without covariance
+  Eigen::VectorXd
+      parameters_u;  ///< of the raw nuisance parameters by the model alone; empty without covariance
   std::vector<SetupSummary> setups;
   double chi2 = 0.0;
   double dof = 0.0;
@@ -72,6 +74,7 @@ struct Validation {
   Evaluation before;
   Evaluation after;
   ValidationFigures figures;
+  std::vector<Finding> contradicted;  ///< stated values of the campaign, by the readings with the model
 };
 
 Validation validate(const Campaign& campaign, const FitResult& result, int threads = 0);

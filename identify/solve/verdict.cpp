@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <set>
@@ -120,25 +121,6 @@ void report_outliers(FitResult& result) {
   if (removed > 0) result.findings.push_back({FindingCode::ReadingsRemoved, {{"readings", removed}}});
 }
 
-/// A stated guess that the readings contradict is a mistake in a file, or a model that lacks something.
-void report_contradicted_priors(FitResult& result) {
-  for (const ParameterBlock& block : result.layout.blocks) {
-    for (int k = 0; k < block.size(); ++k) {
-      if (block.prior_sigma[k] == 0.0) continue;
-      const double miss = std::abs(result.parameters[block.offset + k] - block.prior_mean[k]);
-      if (miss < kContradicted * block.prior_sigma[k]) continue;
-      const auto at = static_cast<std::size_t>(k);
-      result.findings.push_back(
-          {FindingCode::PriorContradicted,
-           {{"block", block.name},
-            {"parameter", block.labels[at]},
-            {"miss", FindingNumber{miss, block.units[at], block.si_per_unit[at]}},
-            {"sigma", FindingNumber{block.prior_sigma[k], block.units[at], block.si_per_unit[at]}},
-            {"default", block.weak_default_prior}}});
-    }
-  }
-}
-
 /// A guess of metres is worth a correction though no prior holds it: a fit may start too far off.
 void report_far_guesses(FitResult& result) {
   const auto millimetres = [](double metres) { return FindingNumber{metres, "mm", kMetrePerMillimetre}; };
@@ -251,6 +233,28 @@ void report_lack_of_fit(FitResult& result) {
 
 }  // namespace
 
+std::vector<Finding> contradicted_priors(const std::vector<ParameterBlock>& blocks,
+                                         const Eigen::VectorXd& parameters, const Eigen::VectorXd& more_u) {
+  std::vector<Finding> findings;
+  for (const ParameterBlock& block : blocks) {
+    for (int k = 0; k < block.size(); ++k) {
+      const double sigma = block.prior_sigma[k];
+      if (sigma == 0.0) continue;
+      const double miss = std::abs(parameters[block.offset + k] - block.prior_mean[k]);
+      const double more = more_u.size() > 0 ? more_u[block.offset + k] : 0.0;
+      if (miss < kContradicted * std::hypot(sigma, more)) continue;
+      const auto at = static_cast<std::size_t>(k);
+      findings.push_back({FindingCode::PriorContradicted,
+                          {{"block", block.name},
+                           {"parameter", block.labels[at]},
+                           {"miss", FindingNumber{miss, block.units[at], block.si_per_unit[at]}},
+                           {"sigma", FindingNumber{sigma, block.units[at], block.si_per_unit[at]}},
+                           {"default", block.weak_default_prior}}});
+    }
+  }
+  return findings;
+}
+
 void judge(const MeasurementModel& model, const AdjustmentEnd& end, FitResult& result) {
   const Campaign& campaign = model.campaign();
   result.findings.insert(result.findings.end(), campaign.notes.begin(), campaign.notes.end());
@@ -263,7 +267,8 @@ void judge(const MeasurementModel& model, const AdjustmentEnd& end, FitResult& r
   report_rotary_errors_left_out(campaign, result);
   report_left_out(campaign, result);
   report_outliers(result);
-  report_contradicted_priors(result);
+  std::ranges::move(contradicted_priors(result.layout.blocks, result.parameters),
+                    std::back_inserter(result.findings));
   report_far_guesses(result);
   report_stations_in_plane(model, result);
   report_unrecorded_drivers(campaign, model.binding(), result);

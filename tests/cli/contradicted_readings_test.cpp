@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 
 #include "tests/support/program.h"
@@ -50,6 +52,20 @@ class ContradictedReadings : public ::testing::Test {
     const auto run = run_program("compare " + campaign + " " + path("result"));
     EXPECT_EQ(run.exit_code, 0) << run.errors;
     return run.output;
+  }
+
+  /// Findings of `volcal validate` on the campaign with side_x stated `millimetres` longer along Z, +- 3 um.
+  Json validated_with_tool(const std::string& campaign, double millimetres) const {
+    const std::string file = path("campaign/machine.toml");
+    const std::string machine = testing::content(file);
+    const std::regex offset(R"((\[tools\.side_x\]\s*offset_mm = \[110[.0]*, 15[.0]*, )-240[.0]*\])");
+    std::ofstream(file) << std::regex_replace(
+        machine, offset, "$1" + std::to_string(-240.0 - millimetres) + "]\noffset_sigma_um = 3.0");
+    EXPECT_NE(testing::content(file), machine);
+    const auto run = run_program("validate " + path("result") + " " + campaign + " --json");
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    std::ofstream(file) << machine;
+    return Json::parse(run.output).value("notes_findings", Json::array());
   }
 
   std::string report() const { return testing::content(path("result/report.html")); }
@@ -101,6 +117,20 @@ TEST_F(ContradictedReadings, OtherwiseNothingIsNext) {
     EXPECT_THAT(report(), HasSubstr("The model explains the readings"));
   }
   EXPECT_THAT(compared(campaign), AllOf(HasSubstr("no failure found"), Not(HasSubstr("volcal diagnose"))));
+}
+
+/// 50 um of a tool that is stated to 3 um.
+TEST_F(ContradictedReadings, SayThatAToolIsNotAsStated) {
+  const std::string campaign = simulated("[5, 4, 4]");
+  fitted(campaign);
+  const Json findings = validated_with_tool(campaign, 0.05);
+  const auto contradicted = std::ranges::find_if(
+      findings, [](const Json& finding) { return finding.at("code") == "prior.contradicted"; });
+  ASSERT_NE(contradicted, findings.end()) << findings;
+  EXPECT_THAT(contradicted->at("data").at("block").get<std::string>(), HasSubstr("side_x"));
+  EXPECT_NEAR(contradicted->at("data").at("miss").at("si").get<double>(), 50e-6, 15e-6);
+  for (const Json& finding : validated_with_tool(campaign, 0.0))
+    EXPECT_NE(finding.at("code"), "prior.contradicted") << finding;
 }
 
 }  // namespace

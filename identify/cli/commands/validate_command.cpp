@@ -133,6 +133,7 @@ int run_validate(const ValidateArguments& arguments) {
   std::ranges::move(findings_of_tables(result, tools_of_setups(campaign)),
                     std::back_inserter(campaign.notes));
   const Validation validation = validate(campaign, result, arguments.threads);
+  std::ranges::copy(validation.contradicted, std::back_inserter(campaign.notes));
   auto figures = validation_json(validation.figures, fitted);
   if (compensated) {
     figures["compensated_rms_um"] = compensated->lengths.rms * kPerMicro;

@@ -40,14 +40,16 @@ ErrorTableOptions function_options(const FitResult& result, const TableFormatOpt
 /// metadata.csv, key,value: machine, tool, lines, temperatures, run, conditions.
 std::string table_metadata_csv(const FitResult& result, const TableFormatOptions& options);
 struct TableMetadata {
-  Machine machine;  ///< structure, datum, axes, tools
-  std::string tool;
-  CompensationType type;                       ///< L-VOL in files that do not say
+  Machine machine;        ///< structure, datum, axes, tools
+  std::string tool;       ///< empty: the machine has none, the tables are for the spindle reference
+  CompensationType type;  ///< L-VOL in files that do not say
   std::map<std::string, std::string> entries;  ///< every key
   TablesMadeFor made_for;                      ///< of error tables; empty in files that do not say
   RecordedConditions conditions;               ///< those of `made_for`
   /// Of axes of which a part was measured, m or rad; none in files that do not say.
   std::map<AxisName, std::pair<double, double>> measured;
+
+  Eigen::Vector3d tool_offset() const;  ///< of `tool`, m
 };
 TableMetadata read_table_metadata(const TableFile& file);
 

@@ -162,7 +162,9 @@ class MetadataReader {
     TableMetadata metadata;
     metadata.machine = machine();
     metadata.tool = text("tool");
-    if (!metadata.machine.tool_index(metadata.tool)) fail("tool", "name one of the tools listed below it");
+    const bool has_none = metadata.machine.tools.empty() && metadata.tool.empty();
+    if (!has_none && !metadata.machine.tool_index(metadata.tool))
+      fail("tool", "name one of the tools listed below it");
     metadata.type = compensation_type();
     for (const auto& [key, row] : rows_) metadata.entries[key] = row.cells[1];
     if (metadata.entries.contains(std::string(kEffectConditions))) read_effects(metadata);
@@ -318,6 +320,11 @@ std::string table_metadata_csv(const FitResult& result, const TableFormatOptions
     out.add(key, recorded == options.record.conditions.end() ? otherwise : recorded->second);
   }
   return out.text();
+}
+
+Eigen::Vector3d TableMetadata::tool_offset() const {
+  const auto index = machine.tool_index(tool);
+  return index ? machine.tools[*index].offset : Eigen::Vector3d::Zero();
 }
 
 TableMetadata read_table_metadata(const TableFile& file) { return MetadataReader(file).read(); }

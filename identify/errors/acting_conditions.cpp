@@ -21,7 +21,7 @@ void add_conditions(const EffectReach& reach, std::set<Variable>& acting) {
 std::set<Variable> conditions_of_effects(const FitResult& result, const Conditions& conditions,
                                          bool surfaces_alone) {
   std::set<Variable> acting;
-  for (const Tool& tool : result.machine.tools) {
+  for (const Tool& tool : result.machine.functional_tools()) {
     const MachineEffects effects(result, tool, conditions);
     for (std::size_t e = 0; e < effects.effect_count(); ++e) {
       if (!surfaces_alone || effects.is_surface(e)) add_conditions(effects.reach(e), acting);

@@ -75,8 +75,7 @@ std::vector<double> table_positions(const FitResult& result, const Axis& axis,
 /// The tool that the share of effects is found for: the named one, or the machine's first.
 Tool tool_of_tables(const Machine& machine, const ErrorTableOptions& options) {
   const auto index = machine.tool_index(options.tool);
-  if (index) return machine.tools[*index];
-  return machine.tools.empty() ? Tool{} : machine.tools.front();
+  return index ? machine.tools[*index] : machine.functional_tools().front();
 }
 
 /// Rows of error tables: error functions, effects by their own axis' position and direction, and the share of
@@ -409,7 +408,8 @@ void for_each_plane_of_tool(const FitResult& result, const Tool& tool, const Axi
 void for_each_plane_of_grid(const FitResult& result, int per_axis, const Conditions& conditions,
                             const std::function<void(std::span<const VolumetricError>)>& use) {
   const AxisGrid axes = axis_grid(result.machine, per_axis);
-  for (const Tool& tool : result.machine.tools) for_each_plane_of_tool(result, tool, axes, conditions, use);
+  for (const Tool& tool : result.machine.functional_tools())
+    for_each_plane_of_tool(result, tool, axes, conditions, use);
 }
 
 std::vector<Finding> unmeasured_travel(const FitResult& result) {

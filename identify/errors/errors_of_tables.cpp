@@ -59,7 +59,9 @@ void add_finding_of_tables(const TablesMadeFor& made_for, FitResult& result) {
     conditions.push_back(variable.name());
     values.push_back({condition.value * unit.si_per_unit, unit_text(unit.suffix), unit.si_per_unit});
   }
-  if (made_for.tool.empty() && conditions.empty() && made_for.left_out.empty()) return;
+  if (made_for.tool.empty() && conditions.empty() && made_for.shared_effects.empty() &&
+      made_for.left_out.empty())
+    return;
   Finding finding{FindingCode::ErrorsOfTables, {}};
   if (!made_for.tool.empty()) finding.data["tool"] = made_for.tool;
   if (!conditions.empty()) {

@@ -522,7 +522,7 @@ std::vector<EffectOnNoPose> effects_on_no_pose(const FitResult& result) {
     const std::unique_ptr<Effect> effect = kind->make(spec, result.identified.file);
     if (!acts_on_machine(*effect)) continue;
     const std::set<Variable> named = conditions_of_effect(spec, *effect);
-    const bool acts = std::ranges::any_of(result.machine.tools, [&](const Tool& tool) {
+    const bool acts = std::ranges::any_of(result.machine.functional_tools(), [&](const Tool& tool) {
       return ReachProbe(result.machine, tool, conditions, clock_start).reach_of(*effect, named).acts;
     });
     if (!acts) found.push_back({effect_label(*effect), named});

@@ -55,8 +55,8 @@ std::string errors_of_tables(const Finding& finding) {
   std::string text = "these errors are those of tables";
   if (!made_for.empty()) text += fmt::format(" for {}", fmt::join(made_for, ", "));
   if (!shared.empty())
-    text += fmt::format("; for {} they hold the nearest errors of a rigid body with that tool",
-                        fmt::join(shared, ", "));
+    text += fmt::format("; for {} they hold the nearest errors of a rigid body {}", fmt::join(shared, ", "),
+                        finding.has("tool") ? "with that tool" : "at the spindle reference");
   if (!left_out.empty())
     text += fmt::format("; {} {} in none of them", fmt::join(left_out, ", "),
                         left_out.size() == 1 ? "is" : "are");

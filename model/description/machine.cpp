@@ -157,6 +157,8 @@ std::vector<AxisName> Machine::rotary_axes() const {
   return found;
 }
 
+std::vector<Tool> Machine::functional_tools() const { return tools.empty() ? std::vector{Tool{}} : tools; }
+
 std::optional<std::size_t> Machine::tool_index(const std::string& wanted) const {
   for (std::size_t i = 0; i < tools.size(); ++i) {
     if (tools[i].name == wanted) return i;

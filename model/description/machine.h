@@ -84,6 +84,8 @@ struct Machine {
   std::vector<AxisName> linear_axes() const;       ///< the main ones, then the parallel ones
   std::vector<AxisName> rotary_axes() const;       ///< in the structure's order
   std::optional<std::size_t> tool_index(const std::string& wanted) const;
+  /// The tools; of a machine without any the spindle reference, as one tool without a name.
+  std::vector<Tool> functional_tools() const;
 };
 
 }  // namespace volcal

@@ -81,7 +81,7 @@ sim::ControlTables csv_control(std::span<const TableFile> files) {
   const bool rotary = !metadata.type.rotary().empty();
   sim::ControlModel model{metadata.machine, {}, sim::TableValue::Correction, {}, {}};
   if (rotary) model.rotary = sim::RotaryModel::TurnsTheAxes;
-  model.tool = metadata.machine.tools[*metadata.machine.tool_index(metadata.tool)].offset;
+  model.tool = metadata.tool_offset();
   std::istringstream text(content_of(files, "compensation_tables.csv"));
   std::string line;
   std::getline(text, line);

@@ -53,7 +53,7 @@ std::vector<double> nodes_of_column(const std::vector<Words>& rows, std::size_t 
 sim::ControlTwistGrid twist_grid(const TableFile& file, const TableMetadata& metadata) {
   sim::ControlTwistGrid grid;
   grid.machine = metadata.machine;
-  grid.tool = metadata.machine.tools.at(*metadata.machine.tool_index(metadata.tool)).offset;
+  grid.tool = metadata.tool_offset();
   std::map<std::string, Words> keys;
   for (const Words& line : lines_of_words(file.content, " \t")) {
     auto [key, value] = key_of(line);

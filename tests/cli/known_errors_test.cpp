@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -293,6 +294,33 @@ TEST_F(KnownErrors, TablesSayWhichToolAndConditionsTheyHoldFor) {
   const Json json = Json::parse(done("budget " + path("tables") + " --tool short --json"));
   EXPECT_EQ(json.at("of_tables_findings").at(0).at("code"), "errors.of-tables");
   EXPECT_EQ(json.at("of_tables_findings").at(1).at("code"), "errors.tables-of-other-tool");
+}
+
+// The functional point is the spindle reference: what a tool without an offset has.
+TEST_F(KnownErrors, AMachineWithoutToolsHasTablesAtTheSpindleReference) {
+  const std::string demo = testing::content(testing::kDemoMachine);
+  const std::string machine = demo.substr(0, demo.find("[tools."));
+  write("bare.toml", machine);
+  write("equipped.toml", machine + "[tools.none]\noffset_mm = [0.0, 0.0, 0.0]\n");
+  for (const std::string name : {"bare", "equipped"})
+    write("errors_" + name + ".toml",
+          "format = \"volcal-model-1\"\nmachine = \"" + name + ".toml\"\n" + kKnown);
+  const auto errors_at = [&](const std::string& errors) {
+    return Json::parse(done("tables " + path(errors) + " --at X=120,Y=40,Z=-110 --json"))
+        .at("volumetric_errors");
+  };
+  const Json bare = errors_at("errors_bare.toml"), equipped = errors_at("errors_equipped.toml");
+  ASSERT_EQ(bare.size(), 1U);
+  EXPECT_EQ(bare.at(0).at("tool"), "");
+  EXPECT_EQ(bare.at(0).at("error_um"), equipped.at(0).at("error_um"));
+  for (const std::string name : {"bare", "equipped"})
+    done("tables " + path("errors_" + name + ".toml") + " --grid 3 -o " + path("tables_" + name));
+  EXPECT_EQ(errors_at("tables_bare").at(0).at("error_um"), errors_at("tables_equipped").at(0).at("error_um"));
+  const auto grid = [&](const std::string& folder) {
+    return testing::content(path(folder + "/volumetric_grid.csv"));
+  };
+  EXPECT_EQ(std::ranges::count(grid("tables_bare"), '\n'), 1 + 3 * 3 * 3);
+  EXPECT_EQ(std::ranges::count(grid("tables_equipped"), '\n'), 1 + 3 * 3 * 3);
 }
 
 TEST_F(KnownErrors, TablesOfOlderMakeAreReadAsBefore) {

@@ -81,7 +81,7 @@ std::string check_format_name(const std::string& name) {
 
 /// All of them when none is named.
 std::vector<Tool> chosen_tools(const Machine& machine, const std::string& name) {
-  if (name.empty()) return machine.tools;
+  if (name.empty()) return machine.functional_tools();
   TableFormatOptions options;
   options.tool = name;
   return {tool_of(machine, options)};
@@ -237,8 +237,9 @@ std::string step_text(const MadeTables& made) {
 
 void print_tables(const MadeTables& made, const TablesArguments& arguments, const FitResult& result) {
   const Machine& machine = result.machine;
-  fmt::print("{} {}, tool {}{}\n", made.format->name, made.options.type.name(),
-             tool_of(machine, made.options).name, step_text(made));
+  const std::string& tool = tool_of(machine, made.options).name;
+  fmt::print("{} {}, {}{}\n", made.format->name, made.options.type.name(),
+             tool.empty() ? "at the spindle reference" : "tool " + tool, step_text(made));
   fmt::print("{}", conditions_text(result, *made.options.conditions));
   fmt::print("{}", volume_check_text(made.check, made.options.type));
   if (made.rotary_check) fmt::print("{}", rotary_check_text(*made.rotary_check, made.options.type));
@@ -312,7 +313,7 @@ constexpr double kMostGridPoints = 1e7;
 /// Throws InputError for a grid of more points than a table of it is read for.
 void require_possible_grid(const Machine& machine, int per_axis) {
   const auto axes = static_cast<double>(machine.main_linear_axes().size());
-  const auto tools = static_cast<double>(machine.tools.size());
+  const auto tools = static_cast<double>(machine.functional_tools().size());
   const double points = tools * std::pow(per_axis, axes);
   if (points <= kMostGridPoints) return;
   throw InputError({},

@@ -129,7 +129,7 @@ CompensationTables read_csv(std::span<const TableFile> files) {
   }
   const auto tables = std::make_shared<const FunctionTables>(rows, file);
   const KinematicChain chain(metadata.machine);
-  const Eigen::Vector3d tool = metadata.machine.tools[*metadata.machine.tool_index(metadata.tool)].offset;
+  const Eigen::Vector3d tool = metadata.tool_offset();
   const Eigen::Vector3d movable = movable_directions(metadata.machine);
   const auto error = [=](const AxisPosition& position, const ApproachDirection& direction) {
     const AxisPosition linear = without_rotary_axes(position);

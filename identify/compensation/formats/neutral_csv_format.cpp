@@ -186,9 +186,7 @@ CompensationTables read_neutral(std::span<const TableFile> files) {
   if (rotary != nullptr) add_rotary_tables(*rotary, result);
   if (grids.empty()) return result;
   const TableMetadata metadata = read_table_metadata(file_named(files, kMetadataFile));
-  const Machine& machine = metadata.machine;
-  result.terms.push_back(
-      rotary_grid_term(std::move(grids), machine, machine.tools[*machine.tool_index(metadata.tool)].offset));
+  result.terms.push_back(rotary_grid_term(std::move(grids), metadata.machine, metadata.tool_offset()));
   return result;
 }
 

@@ -19,15 +19,13 @@ std::vector<AxisName> identified_rotary_axes(const FitResult& result) {
   for (const ParameterBlock& block : result.layout.blocks) {
     if (block.location) add(block.location->axis);
   }
-  if (!result.machine.tools.empty()) {
-    const MachineEffects effects(result, result.machine.tools.front(), default_conditions(result));
-    for (const EffectColumn& column : effects.columns()) {
-      if (column.target.kind == TargetKind::Motion) add(column.target.symbol.axis);
-    }
-    for (std::size_t effect = 0; effect < effects.effect_count(); ++effect) {
-      for (const AxisName axis : kAllAxes) {
-        if (effects.reach(effect).position[index_of(axis)]) add(axis);
-      }
+  const MachineEffects effects(result, result.machine.functional_tools().front(), default_conditions(result));
+  for (const EffectColumn& column : effects.columns()) {
+    if (column.target.kind == TargetKind::Motion) add(column.target.symbol.axis);
+  }
+  for (std::size_t effect = 0; effect < effects.effect_count(); ++effect) {
+    for (const AxisName axis : kAllAxes) {
+      if (effects.reach(effect).position[index_of(axis)]) add(axis);
     }
   }
   std::ranges::sort(axes);

@@ -323,6 +323,17 @@ TEST_F(KnownErrors, AMachineWithoutToolsHasTablesAtTheSpindleReference) {
   EXPECT_EQ(std::ranges::count(grid("tables_equipped"), '\n'), 1 + 3 * 3 * 3);
 }
 
+TEST_F(KnownErrors, EveryToolThatIsPrintedIsSaidToBeOfOtherTables) {
+  done("tables " + path("known.toml") + " --tool side_x --conditions T_air=23 -o " + path("tables"));
+  const std::string all = done("tables " + path("tables") + " --at X=0");
+  const std::string one = done("tables " + path("tables") + " --at X=0 --tool short");
+  const std::string other_tool = "the tables were made for tool side_x: for tool short ";
+  EXPECT_THAT(one, HasSubstr(other_tool));
+  EXPECT_THAT(all, HasSubstr(other_tool));
+  EXPECT_THAT(all, Not(HasSubstr("for tool side_x they lack")));
+  EXPECT_THAT(done("tables " + path("tables") + " --at X=0 --dry-run"), HasSubstr(other_tool));
+}
+
 TEST_F(KnownErrors, TablesOfOlderMakeAreReadAsBefore) {
   done("tables " + path("known.toml") + " --tool side_x --conditions T_air=23 -o " + path("tables"));
   const std::string at = "tables " + path("tables") + " --at X=120,Y=40,Z=-110 --json";

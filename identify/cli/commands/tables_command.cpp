@@ -126,10 +126,14 @@ std::vector<VolumetricError> errors_at_points(const FitResult& result, const Tab
   return errors;
 }
 
-/// That these errors are used for: of tables, of --at where one is named.
+/// That these errors are used for: those of the tables and of --at.
 std::vector<std::string> tools_asked_for(const FitResult& result, const TablesArguments& arguments,
                                          const std::optional<MadeTables>& made) {
-  return {made ? tool_of(result.machine, made->options).name : arguments.tool};
+  std::vector<std::string> names;
+  if (made) names.push_back(tool_of(result.machine, made->options).name);
+  if (arguments.at.empty()) return names;
+  for (const Tool& tool : chosen_tools(result.machine, arguments.tool)) names.push_back(tool.name);
+  return names;
 }
 
 /// Of the points of --at, where no tables say it.

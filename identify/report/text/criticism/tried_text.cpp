@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -36,13 +37,26 @@ std::string size_text(const Comparison& without, const Comparison& with) {
   return text;
 }
 
+/// Of chi2: two fits that end where they should differ by less than this.
+constexpr double kRoundingOfChi2 = 1e-6;
+
+std::string chi2_verdict(const TriedEffect& tried) {
+  const double before = tried.without.total.chi2, after = tried.with.total.chi2;
+  const double gain = before - after;
+  const bool is_same = std::abs(gain) <= kRoundingOfChi2 * std::max(before, after);
+  const std::string change =
+      is_same ? std::string("chi2 the same")
+              : fmt::format("chi2 {} by {}", gain > 0.0 ? "less" : "more", short_number(std::abs(gain), 3));
+  if (!tried.not_visible.empty()) return change + ": no verdict on an effect that is not visible";
+  if (is_same) return change + ": it predicts neither better nor worse";
+  return change + (gain > 0.0 ? ": it predicts better" : ": it predicts no better");
+}
+
 std::string heldout_line(const TriedEffect& tried) {
   if (!tried.judged) return "the setups have too few lines to hold some out";
-  const double gain = tried.without.total.chi2 - tried.with.total.chi2;
-  return fmt::format(
-      "{} on {} readings that neither fit has seen, chi2 {} by {}: {}", size_text(tried.without, tried.with),
-      count_number(static_cast<long long>(tried.with.total.observations)), gain >= 0.0 ? "less" : "more",
-      short_number(std::abs(gain), 3), gain > 0.0 ? "it predicts better" : "it predicts no better");
+  return fmt::format("{} on {} readings that neither fit has seen, {}", size_text(tried.without, tried.with),
+                     count_number(static_cast<long long>(tried.with.total.observations)),
+                     chi2_verdict(tried));
 }
 
 /// What a scan or a test of the catalogue still sees, strongest first.

@@ -48,6 +48,8 @@ struct TableMetadata {
   RecordedConditions conditions;               ///< those of `made_for`
   /// Of axes of which a part was measured, m or rad; none in files that do not say.
   std::map<AxisName, std::pair<double, double>> measured;
+  /// Identified displacement of tools' offsets, m; none in files that do not say.
+  std::map<std::string, Eigen::Vector3d> tool_errors;
 
   Eigen::Vector3d tool_offset() const;  ///< of `tool`, m
 };

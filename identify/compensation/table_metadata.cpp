@@ -13,6 +13,7 @@
 #include "volcal/identify/errors/rotary/rotary_grid.h"
 #include "volcal/identify/text/csv_cell.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -34,9 +35,11 @@ class MetadataWriter {
     add(key, std::isfinite(value) ? fmt::format("{:.12g}", value) : std::string("not available"));
   }
   void add_point_mm(const std::string& key, const Eigen::Vector3d& point) {
+    add_vector(key, point / kMetrePerMillimetre, "mm");
+  }
+  void add_vector(const std::string& key, const Eigen::Vector3d& vector, const char* unit) {
     for (std::size_t i = 0; i < 3; ++i)
-      add_number(fmt::format("{}.{}_mm", key, kCoordinates[i]),
-                 point[static_cast<Eigen::Index>(i)] / kMetrePerMillimetre);
+      add_number(fmt::format("{}.{}_{}", key, kCoordinates[i], unit), vector[static_cast<Eigen::Index>(i)]);
   }
   std::string text() const { return fmt::to_string(text_); }
 
@@ -62,6 +65,18 @@ void add_machine(MetadataWriter& out, const Machine& machine) {
     }
   }
   for (const Tool& tool : machine.tools) out.add_point_mm("tools." + tool.name + ".offset", tool.offset);
+}
+
+std::string tool_error_key(const std::string& tool) { return "tools." + tool + ".offset_error"; }
+
+/// Of tools whose offset was estimated: no function of an axis holds it.
+void add_tool_errors(MetadataWriter& out, const FitResult& result) {
+  for (const Tool& tool : result.machine.tools) {
+    const ParameterBlock* block = result.layout.find_block(tool_parameter(tool.name));
+    if (block == nullptr) continue;
+    const Eigen::Vector3d error = result.parameters.segment<3>(block->offset);
+    out.add_vector(tool_error_key(tool.name), error / kMetrePerMicrometre, "um");
+  }
 }
 
 /// Of axes of which a part was measured.
@@ -169,6 +184,11 @@ class MetadataReader {
     for (const auto& [key, row] : rows_) metadata.entries[key] = row.cells[1];
     if (metadata.entries.contains(std::string(kEffectConditions))) read_effects(metadata);
     for (const Axis& axis : metadata.machine.axes) read_measured(axis, metadata);
+    for (const Tool& tool : metadata.machine.tools) {
+      const std::string key = tool_error_key(tool.name);
+      if (rows_.contains(key + ".x_um"))
+        metadata.tool_errors[tool.name] = vector(key, "um", kMetrePerMicrometre);
+    }
     return metadata;
   }
 
@@ -229,11 +249,12 @@ class MetadataReader {
     }
   }
 
-  Eigen::Vector3d point(const std::string& key) const {
+  Eigen::Vector3d point(const std::string& key) const { return vector(key, "mm", kMetrePerMillimetre); }
+  Eigen::Vector3d vector(const std::string& key, const char* unit, double si_per_unit) const {
     Eigen::Vector3d result;
     for (std::size_t i = 0; i < 3; ++i)
       result[static_cast<Eigen::Index>(i)] =
-          number(fmt::format("{}.{}_mm", key, kCoordinates[i])) * kMetrePerMillimetre;
+          number(fmt::format("{}.{}_{}", key, kCoordinates[i], unit)) * si_per_unit;
     return result;
   }
 
@@ -311,6 +332,7 @@ std::string table_metadata_csv(const FitResult& result, const TableFormatOptions
   out.add_point_mm("specific_lines", {lines[0], lines[1], lines[2]});
   if (!options.type.rotary().empty()) add_rotary_types(out, result, options);
   add_machine(out, result.machine);
+  add_tool_errors(out, result);
   add_measured(out, result);
   add_run(out, result, options);
   for (const std::string_view key : recordable_conditions()) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/variable.h"
 #include "volcal/model/effects/conditions_of_effect.h"
@@ -113,6 +114,22 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model) {
   for (const auto& [channel, range] : model.conditions.temperature_degC)
     result.conditions.temperature_degC[channel] = range;
   return result;
+}
+
+void state_tool_error(const std::string& tool, const Eigen::Vector3d& offset_error, FitResult& result) {
+  ParameterBlock block;
+  block.kind = ParameterKind::ToolOffset;
+  block.name = tool_parameter(tool);
+  block.labels = {"x", "y", "z"};
+  block.units = {"um", "um", "um"};
+  block.si_per_unit = {kMicro, kMicro, kMicro};
+  block.prior_mean = block.prior_sigma = Eigen::VectorXd::Zero(3);
+  block.guess = offset_error;
+  block.offset = result.layout.size;
+  result.layout.blocks.push_back(std::move(block));
+  result.layout.size += 3;
+  result.parameters.conservativeResize(result.layout.size);
+  result.parameters.tail<3>() = offset_error;
 }
 
 bool states_errors(const ModelSpec& model) {

@@ -2,6 +2,9 @@
 /// Errors that are stated and not identified: the values of a model file as a result without uncertainty, so
 /// that tables, compensations and budgets can be had of them (ISO/TR 16907:2015, 9.2.4 g).
 
+#include <Eigen/Core>
+#include <string>
+
 #include "volcal/identify/result/result.h"
 
 namespace volcal {
@@ -11,6 +14,9 @@ namespace volcal {
 /// the campaign; without it temperatures that effects name are assumed at 20 degC, time and feed at 0, until
 /// they are stated.
 FitResult stated_result(const Machine& machine, const ModelSpec& model);
+
+/// Adds to a stated result the displacement of a tool's offset, m.
+void state_tool_error(const std::string& tool, const Eigen::Vector3d& offset_error, FitResult& result);
 
 /// Whether a model states an error: a function with coefficients, a known location, an effect.
 bool states_errors(const ModelSpec& model);

@@ -42,6 +42,7 @@ std::string table_metadata_csv(const FitResult& result, const TableFormatOptions
 struct TableMetadata {
   Machine machine;        ///< structure, datum, axes, tools
   std::string tool;       ///< empty: the machine has none, the tables are for the spindle reference
+  std::string alignment;  ///< empty: as identified
   CompensationType type;  ///< L-VOL in files that do not say
   std::map<std::string, std::string> entries;  ///< every key
   TablesMadeFor made_for;                      ///< of error tables; empty in files that do not say

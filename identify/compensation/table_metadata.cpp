@@ -22,6 +22,7 @@ namespace {
 constexpr std::string_view kMetadataFormat = "volcal-tables-1";
 constexpr std::string_view kNotRecorded = "not recorded";
 constexpr std::string_view kEffectConditions = "effects.conditions";
+constexpr std::string_view kAsIdentified = "as identified";
 constexpr std::string_view kNone = "none", kBetween = "; ";
 constexpr std::array<char, 3> kCoordinates = {'x', 'y', 'z'};
 
@@ -132,7 +133,7 @@ void add_effects(MetadataWriter& out, const TablesMadeFor& made_for) {
 }
 
 void add_run(MetadataWriter& out, const FitResult& result, const TableFormatOptions& options) {
-  out.add("alignment", result.alignment.empty() ? "as identified" : result.alignment);
+  out.add("alignment", result.alignment.empty() ? kAsIdentified : std::string_view(result.alignment));
   std::size_t readings = 0;
   std::string setups;
   for (const SetupSummary& setup : result.setups) {
@@ -182,6 +183,8 @@ class MetadataReader {
       fail("tool", "name one of the tools listed below it");
     metadata.type = compensation_type();
     for (const auto& [key, row] : rows_) metadata.entries[key] = row.cells[1];
+    if (rows_.contains("alignment") && text("alignment") != kAsIdentified)
+      metadata.alignment = text("alignment");
     if (metadata.entries.contains(std::string(kEffectConditions))) read_effects(metadata);
     for (const Axis& axis : metadata.machine.axes) read_measured(axis, metadata);
     for (const Tool& tool : metadata.machine.tools) {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -25,6 +26,9 @@ constexpr double kHolds = 1e-9;  // largest misfit of 1, or of a slope over the 
 constexpr double kHeld = 1e-7;   // share of a displacement that locations and frames may leave
 constexpr int kAlignedPoses = 180;
 constexpr double kSameOffset = 1e-12;  // m
+constexpr double kSameHome = 1e-9;     // m or rad
+/// By which alignments turn tools, rad: offsets of a model that differ by more are those of other tools.
+constexpr double kLargestTurn = 1e-3;
 
 Eigen::Vector3d axis_vector(AxisName axis) { return Eigen::Vector3d::Unit(direction_of(axis)); }
 
@@ -420,8 +424,19 @@ AlignedResult align_result(const FitResult& result, const Alignment& alignment) 
   return aligned;
 }
 
+bool is_in_other_frame(const FitResult& result, const Machine& machine) {
+  if (!result.alignment.empty()) return true;
+  const Datum &own = result.machine.datum, &other = machine.datum;
+  return own.primary != other.primary || own.secondary != other.secondary ||
+         std::ranges::any_of(machine.axes, [&](const Axis& axis) {
+           return result.machine.has_axis(axis.name) &&
+                  std::abs(result.machine.axis(axis.name).home - axis.home) > kSameHome;
+         });
+}
+
 void adopt_alignment(Campaign& campaign, const FitResult& result) {
-  if (result.alignment.empty()) return;
+  if (!is_in_other_frame(result, campaign.machine)) return;
+  const double most = result.alignment.empty() ? kLargestTurn : std::numeric_limits<double>::infinity();
   campaign.machine.datum = result.machine.datum;
   for (Axis& axis : campaign.machine.axes) {
     if (result.machine.has_axis(axis.name)) axis.home = result.machine.axis(axis.name).home;
@@ -430,8 +445,10 @@ void adopt_alignment(Campaign& campaign, const FitResult& result) {
     Tool& tool = campaign.machine.tools[number];
     const auto index = result.machine.tool_index(tool.name);
     if (!index) continue;
-    const Eigen::Vector3d former = std::exchange(tool.offset, result.machine.tools[*index].offset);
-    if ((tool.offset - former).norm() < kSameOffset) continue;
+    const Eigen::Vector3d former = tool.offset, turned = result.machine.tools[*index].offset;
+    const double change = (turned - former).norm();
+    if (change < kSameOffset || change > most * former.norm()) continue;
+    tool.offset = turned;
     for (Setup& setup : campaign.setups) {
       if (setup.tool == number) restate_readings(campaign.machine, campaign.file, former, tool.offset, setup);
     }

@@ -51,9 +51,14 @@ struct AlignedResult {
 /// refer to the former origin: they count positions from home. Surfaces, expressions and reversals do not.
 AlignedResult align_result(const FitResult& result, const Alignment& alignment);
 
-/// Readings of a campaign of the machine as it was identified, in the coordinate system of an aligned result:
-/// its datum, origin and tool offsets. Readings that count from the nominal tool point, which the control has
-/// from the former offsets, are restated for the new ones. Any other campaign and result stay as they are.
+/// Whether errors are stated in another coordinate system than that of a machine file: aligned, or another
+/// datum or home.
+bool is_in_other_frame(const FitResult& result, const Machine& machine);
+
+/// Readings of a campaign of the machine as it was identified, in the coordinate system of such errors: their
+/// datum, origin and tool offsets. Readings that count from the nominal tool point, which the control has
+/// from the former offsets, are restated for the new ones. Any other campaign and result stay as they are;
+/// where errors do not say that they are aligned, so do tools whose offsets are no turn of the former ones.
 void adopt_alignment(Campaign& campaign, const FitResult& result);
 
 }  // namespace volcal

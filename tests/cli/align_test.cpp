@@ -60,6 +60,30 @@ TEST_F(AlignedResults, PredictTheSameReadings) {
   }
 }
 
+/// Tables and models of an aligned result are judged in its coordinate system, too; neither holds how well
+/// the errors are known.
+TEST_F(AlignedResults, AreJudgedAsTablesAndModels) {
+  ASSERT_EQ(align("--primary Y --secondary Z --origin X=100,Y=-50,Z=-200").exit_code, 0);
+  for (const std::string errors : {"result", "aligned"})
+    ASSERT_EQ(run_program("tables " + path(errors) + " --positions 101 --grid 2 -o " + path("of_" + errors))
+                  .exit_code,
+              0);
+  const std::string campaign = path("campaign/truth/campaign.toml");
+  const auto rms_after = [&](const std::string& errors) {
+    return json_of("validate " + path(errors) + " " + campaign).at("rms_after_um").get<double>();
+  };
+  const double before = rms_after("result");
+  EXPECT_NEAR(rms_after("of_result"), before, 0.02);
+  EXPECT_NEAR(rms_after("of_aligned"), before, 0.02);
+  EXPECT_NEAR(rms_after("aligned/identified.toml"), before, 0.02);
+  const auto models =
+      json_of("compare " + campaign + " " + path("of_result") + " " + path("of_aligned")).at("models");
+  const auto rms_of = [&](std::size_t model) {
+    return models.at(model).at("total").at("lengths_um").at("rms").get<double>();
+  };
+  EXPECT_NEAR(rms_of(1), rms_of(0), 0.02);
+}
+
 TEST_F(AlignedResults, ExplainACampaignAsBefore) {
   ASSERT_EQ(align("--primary Z --secondary X --origin X=100,Y=-50,Z=-200").exit_code, 0);
   const auto compared =

@@ -62,13 +62,16 @@ struct NamedModel {
 /// Error tables as a model.
 NamedModel load_tables(const std::string& argument, const Campaign& campaign) {
   const FitResult tables = read_known_errors(argument);
-  if (const std::string difference = machine_difference(tables.machine, campaign.machine);
-      !difference.empty()) {
+  std::optional<Campaign> aligned;
+  if (is_in_other_frame(tables, campaign.machine)) adopt_alignment(aligned.emplace(campaign), tables);
+  const Machine& machine = aligned ? aligned->machine : campaign.machine;
+  if (const std::string difference = machine_difference(tables.machine, machine); !difference.empty()) {
     throw InputError({argument, 0}, "they belong to another machine than the campaign: " + difference,
                      "compare with tables of the same machine");
   }
   NamedModel model{argument, tables.identified, tables.identified, false};
   model.of_tables = findings_of_tables(tables, tools_of_setups(campaign));
+  model.aligned = std::move(aligned);
   return model;
 }
 
@@ -92,7 +95,7 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
   if (is_result(argument) || std::filesystem::is_directory(argument)) {
     const FitResult result = read_result(argument);
     std::optional<Campaign> aligned;
-    if (!result.alignment.empty()) adopt_alignment(aligned.emplace(campaign), result);
+    if (is_in_other_frame(result, campaign.machine)) adopt_alignment(aligned.emplace(campaign), result);
     const Machine& machine = aligned ? aligned->machine : campaign.machine;
     if (const std::string difference = machine_difference(result.machine, machine); !difference.empty()) {
       throw InputError({argument, 0}, "it belongs to another machine than the campaign: " + difference,

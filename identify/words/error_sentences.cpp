@@ -173,6 +173,13 @@ std::string compensations_differ(const Finding& finding) {
       finding.text("measured"));
 }
 
+std::string compensations_in_tables(const Finding& finding) {
+  return fmt::format(
+      "the errors were identified with {} active: where the tables stand in place of these, as superimposed "
+      "ones do, what these corrected was taken out twice; give the result that was identified without them",
+      finding.text("identified"));
+}
+
 std::string compensations_unstated(const Finding& finding) {
   return fmt::format(
       "the campaign {}, and what the tables correct was taken out of its readings: state "
@@ -236,6 +243,7 @@ std::span<const SentenceMaker> error_sentences() {
       {FindingCode::TablesLeaveMore, tables_leave_more},
       {FindingCode::CompensationsDiffer, compensations_differ},
       {FindingCode::CompensationsUnstated, compensations_unstated},
+      {FindingCode::CompensationsInTables, compensations_in_tables},
       {FindingCode::RotaryErrorsNotInModel, rotary_not_in_model},
       {FindingCode::RotaryHarmonicsHidden, harmonics_hidden},
   });

@@ -113,6 +113,7 @@ constexpr auto kFindingCodes = [] {
       {RotaryHarmonicsHidden, "errors.rotary-harmonics-hidden", Severity::Note},
       {CompensationsDiffer, "compensation.active-differ", Severity::Warning},
       {CompensationsUnstated, "compensation.active-unstated", Severity::Warning},
+      {CompensationsInTables, "compensation.active-in-tables", Severity::Warning},
   });
 }();
 static_assert(kFindingCodes.size() == static_cast<std::size_t>(FindingCode::End), "every code has one name");

@@ -109,6 +109,7 @@ enum class FindingCode : std::uint8_t {
   RotaryHarmonicsHidden,
   CompensationsDiffer,
   CompensationsUnstated,
+  CompensationsInTables,
   End,  ///< none: how many there are
 };
 

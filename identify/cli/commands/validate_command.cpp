@@ -82,12 +82,8 @@ std::optional<MeasuredError> verify(const ValidateArguments& arguments, const Fi
     return {};
   }
   if (names_compensations(result.active_compensations))
-    throw InputError(
-        {arguments.result, 0},
-        "its errors were identified with " + result.active_compensations +
-            " active, and --tables takes out all that the tables correct, what these corrected too",
-        "give the result that was identified without compensations; or validate this one without "
-        "--tables, on a campaign measured with the same compensations active");
+    campaign.notes.push_back(
+        {FindingCode::CompensationsInTables, {{"identified", result.active_compensations}}});
   if (!names_compensations(campaign.active_compensations)) {
     Finding unstated{FindingCode::CompensationsUnstated};
     if (!campaign.active_compensations.empty()) unstated.data["stated"] = campaign.active_compensations;

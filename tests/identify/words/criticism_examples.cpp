@@ -1,5 +1,7 @@
 // Diagnoses, and measurements that they propose.
 
+#include <limits>
+
 #include "tests/identify/words/finding_examples.h"
 
 namespace volcal {

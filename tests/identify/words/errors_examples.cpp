@@ -146,6 +146,10 @@ std::vector<WordedFinding> examples_of_errors() {
        "the campaign states that no compensations were active, and what the tables correct was taken out of "
        "its readings: state active_compensations in campaign.toml, or leave --tables out where they were "
        "not active"},
+      {{FindingCode::CompensationsInTables, {{"identified", "L-POS"}}},
+       "the errors were identified with L-POS active: where the tables stand in place of these, as "
+       "superimposed ones do, what these corrected was taken out twice; give the result that was identified "
+       "without them"},
       {{FindingCode::RotaryErrorsNotInModel, {{"axis", "C"}, {"in_uncertainty", true}}},
        "axis C moves in these readings, and the model has no errors of it: what they do is in the residuals, "
        "what they may be by their prior in the uncertainty of the model; identify them by volcal fit from "

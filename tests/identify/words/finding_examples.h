@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "volcal/identify/words/sentences.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 

@@ -67,8 +67,7 @@ std::set<std::string> by_commanded_positions(const FitResult& result) {
 
 /// Parameters of effects that are the same at every position, as a reversal or a growth with a temperature.
 std::set<int> without_position(const FitResult& result) {
-  const Tool tool = result.machine.tools.empty() ? Tool{} : result.machine.tools.front();
-  const MachineEffects effects(result, tool, default_conditions(result));
+  const MachineEffects effects(result, result.machine.functional_tools().front(), default_conditions(result));
   std::set<int> parameters;
   for (const EffectColumn& column : effects.columns()) {
     if (effects.reach(column.effect).positions() == 0) parameters.insert(column.parameter);

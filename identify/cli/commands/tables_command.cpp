@@ -24,6 +24,7 @@
 #include "volcal/identify/report/text/correction_text.h"
 #include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/findings_text.h"
+#include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/text/volumetric_text.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/json_text.h"
@@ -241,9 +242,8 @@ std::string step_text(const MadeTables& made) {
 
 void print_tables(const MadeTables& made, const TablesArguments& arguments, const FitResult& result) {
   const Machine& machine = result.machine;
-  const std::string& tool = tool_of(machine, made.options).name;
   fmt::print("{} {}, {}{}\n", made.format->name, made.options.type.name(),
-             tool.empty() ? "at the spindle reference" : "tool " + tool, step_text(made));
+             functional_point_words(tool_of(machine, made.options).name), step_text(made));
   fmt::print("{}", conditions_text(result, *made.options.conditions));
   fmt::print("{}", volume_check_text(made.check, made.options.type));
   if (made.rotary_check) fmt::print("{}", rotary_check_text(*made.rotary_check, made.options.type));

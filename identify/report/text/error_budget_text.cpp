@@ -112,7 +112,7 @@ std::string design_budget_text(const ErrorBudget& budget, const Machine& machine
                                const Tolerances& tolerances, const std::string& tool, bool verbose) {
   const std::vector<TextColumn> columns = {
       {"", Align::Left}, {"depends on", Align::Left}, {"tolerance"}, {"RMS [um]"}, {"share [%]"}};
-  TextTable causes(columns, "Expected error in the volume, tool " + tool + ", by cause");
+  TextTable causes(columns, "Expected error in the volume, " + functional_point_words(tool) + ", by cause");
   for (const BudgetLine& line : budget.causes) causes.add_row(design_cells(line, tolerances));
   causes.add_row(design_cells(budget.total, tolerances));
   const std::size_t shown =
@@ -152,7 +152,7 @@ std::string error_budget_text(const ErrorBudget& budget, const std::string& tool
   const std::vector<TextColumn> columns = {{"", Align::Left}, {"depends on", Align::Left},
                                            {"RMS [um]"},      {"max [um]"},
                                            {"share [%]"},     {"U95 [um]"}};
-  TextTable causes(columns, "Error in the volume, tool " + tool + ", by cause");
+  TextTable causes(columns, "Error in the volume, " + functional_point_words(tool) + ", by cause");
   for (const BudgetLine& line : budget.causes) causes.add_row(cells_of(line, coverage_factor));
   causes.add_row(cells_of(budget.total, coverage_factor));
   const std::size_t shown =

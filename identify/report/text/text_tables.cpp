@@ -82,6 +82,10 @@ std::string short_number(double value, int digits) {
   return fixed_number(value, std::max(0, decimals));
 }
 
+std::string functional_point_words(const std::string& tool) {
+  return tool.empty() ? "at the spindle reference" : "tool " + tool;
+}
+
 std::string count_number(long long value) {
   std::string digits = fmt::format("{}", value);
   const std::size_t first = value < 0 ? 1 : 0;

@@ -37,6 +37,8 @@ class TextTable {
 std::string fixed_number(double value, int decimals);
 /// Number with `digits` significant digits, without exponent between 1e-4 and 1e6; "-" for NaN.
 std::string short_number(double value, int digits = 4);
+/// "tool short"; without a name "at the spindle reference" (Machine::functional_tools).
+std::string functional_point_words(const std::string& tool);
 /// Whole number with a comma between groups of three: 6,048.
 std::string count_number(long long value);
 

@@ -56,5 +56,10 @@ TEST(Numbers, CountsAreGroupedInThrees) {
   EXPECT_EQ(count_number(-1000), "-1,000");
 }
 
+TEST(FunctionalPointWords, WithoutAToolItIsTheSpindleReference) {
+  EXPECT_EQ(functional_point_words("short"), "tool short");
+  EXPECT_EQ(functional_point_words(""), "at the spindle reference");
+}
+
 }  // namespace
 }  // namespace volcal

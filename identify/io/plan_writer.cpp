@@ -12,6 +12,7 @@
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/io/campaign_writer.h"
 #include "volcal/identify/planning/registry.h"
+#include "volcal/identify/result/error_unit.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/identify/words/sentences.h"
@@ -95,14 +96,13 @@ PlanJson layout_json(const CampaignPlan& plan) {
 PlanJson errors_json(const ExpectedCampaign& campaign) {
   PlanJson errors = PlanJson::array();
   for (const Observability& error : campaign.result.rank.errors) {
+    const ErrorUnit unit = unit_of(campaign.result, error.symbol);
     PlanJson json = {{"symbol", error.symbol.name()},
                      {"visible", error.visible},
                      {"visible_fraction", error.visible_fraction},
                      {"effective_parameters", error.effective_parameters}};
-    if (const auto component = error.symbol.component()) {
-      json["unit"] = edge_unit(*component);
-      json["u"] = error.visible ? in_unit(error.u_rms, kMicro) : PlanJson(nullptr);
-    }
+    json["unit"] = unit.name;
+    json["u"] = error.visible ? in_unit(error.u_rms, unit.si_per_unit) : PlanJson(nullptr);
     if (!error.visible) {
       const Explanation words = explanation(error.cause);
       json["reason"] = words.reason;

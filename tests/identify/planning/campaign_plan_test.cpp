@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "volcal/identify/io/plan_writer.h"
 #include "volcal/identify/report/text/plan_text.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/description/errors.h"
@@ -153,6 +154,7 @@ TEST(CampaignPlan, ListsTheAmplitudesThatItDetermines) {
   EXPECT_TRUE(amplitude.visible);
   EXPECT_EQ(amplitude.effective_parameters, 1.0);
   EXPECT_THAT(plan_text(plan), ::testing::ContainsRegex(amplitude.symbol.name() + " +um/m "));
+  EXPECT_THAT(plan_json(plan), HasSubstr("\"unit\": \"um/m\""));
 }
 
 /// A mistake is none of these.

@@ -48,7 +48,7 @@ std::string refusal_on(const Machine& machine) {
 
 TEST(CampaignOnMachine, FindsToolsByTheirNames) {
   Machine machine = machine_of_three_tools();
-  std::ranges::rotate(machine.tools, machine.tools.begin() + 1);
+  std::rotate(machine.tools.begin(), machine.tools.begin() + 1, machine.tools.end());
   machine.file = "other.toml";
   const Campaign campaign = campaign_on_machine(campaign_of_two_tools(), machine);
   EXPECT_EQ(campaign.machine.file, "other.toml");

@@ -47,19 +47,15 @@ class VolumeOfParts {
         is_uncertain_(!result.covariance.isZero(0.0)),
         field_(result, tool, conditions),
         parts_(field_.contributions()),
-        chain_(result.machine),
-        offset_t_(tool.offset),
         turned_(rotary == RotaryPoses::AtRest ? std::vector<AxisName>() : identified_rotary_axes(result)) {
     fields_.resize(parts_.size());
     VolumeMoments moments(result.parameters.size());
-    const std::vector<VolumePoint> poses =
-        turned_.empty() ? volume_poses(result.machine, field_.effects(), cells_per_axis)
-                        : turned_volume_poses(result.machine, turned_, cells_per_axis);
-    for (const VolumePoint& pose : poses) {
-      add(pose.position, pose.direction);
+    for (const VolumePose& pose :
+         volume_poses(result.machine, tool, field_.effects(), turned_, cells_per_axis)) {
+      add(pose);
       if (!pose.inside) continue;
       ++inside_;
-      add_uncertainty(pose.position, pose.direction, moments);
+      add_uncertainty(pose, moments);
     }
     if (is_uncertain_) moments_ = moments.mean();
   }
@@ -96,35 +92,29 @@ class VolumeOfParts {
     return eigenvalues(root.transpose() * result_.covariance(parameters, parameters) * root).cwiseMax(0.0);
   }
 
-  void add(const AxisPosition& position, const ApproachDirection& direction) {
-    if (turned().empty()) {
-      points_.push_back(place_of(result_.machine, position));
-    } else {
-      points_.push_back(chain_.nominal_point_w(position, offset_t_));
-    }
-    const Eigen::Matrix<double, 3, Eigen::Dynamic> rows = field_.rows(position, direction).topRows<3>();
+  void add(const VolumePose& pose) {
+    points_.push_back(pose.place_w);
+    const Eigen::Matrix<double, 3, Eigen::Dynamic> rows =
+        field_.rows(pose.position, pose.direction).topRows<3>();
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       Vector3d displacement = Vector3d::Zero();
       if (const auto* expansion = std::get_if<ExpansionError>(&parts_[p].source))
-        displacement = field_.known_expansion(position, expansion->axis).head<3>();
+        displacement = field_.known_expansion(pose.position, expansion->axis).head<3>();
       for (const int parameter : parts_[p].parameters)
         displacement += rows.col(parameter) * result_.parameters[parameter];
       fields_[p].push_back(displacement);
     }
   }
-  /// Of the point that was added last.
-  void add_uncertainty(const AxisPosition& position, const ApproachDirection& direction,
-                       VolumeMoments& moments) {
-    if (is_uncertain_) moments.add(points_.back(), field_.unheld_rows(position, direction).topRows<3>());
-    faded_.add(points_.back(), field_.faded_errors(position, direction));
+  void add_uncertainty(const VolumePose& pose, VolumeMoments& moments) {
+    if (is_uncertain_)
+      moments.add(pose.place_w, field_.unheld_rows(pose.position, pose.direction).topRows<3>());
+    faded_.add(pose.place_w, field_.faded_errors(pose.position, pose.direction));
   }
 
   const FitResult& result_;
   bool is_uncertain_;
   ErrorField field_;
   std::vector<Contribution> parts_;
-  KinematicChain chain_;
-  Vector3d offset_t_;
   std::vector<AxisName> turned_;
   Field points_;
   std::size_t inside_ = 0;

@@ -1,10 +1,13 @@
 #include "volcal/identify/errors/volume/volume_points.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
+#include "volcal/model/kinematics/chain.h"
 #include "volcal/model/kinematics/rotary_datum.h"
 
 namespace volcal {
@@ -35,13 +38,37 @@ std::vector<double> middles(int cells) {
   return shares;
 }
 
-void add_approaches(const std::vector<AxisPosition>& positions, bool inside,
-                    std::vector<VolumePoint>& points) {
+using AxesByName = std::array<bool, kAxisCount>;
+
+constexpr AxesByName kAllDirected = [] {
+  AxesByName all{};
+  all.fill(true);
+  return all;
+}();
+
+AxesByName directed_axes(const MachineEffects& effects) {
+  AxesByName directed{};
+  for (const std::size_t effect : effects.numbers()) {
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
+      directed[axis] |= effects.reach(effect).direction[axis];
+  }
+  return directed;
+}
+
+/// Every position by all combinations of the directions of these axes; those that are not `directed` from -.
+void add_approaches(const std::vector<AxisPosition>& positions, std::span<const AxisName> axes,
+                    const AxesByName& directed, bool inside, std::vector<VolumePoint>& points) {
   for (const AxisPosition& position : positions) {
-    for (unsigned signs = 0; signs < 8; ++signs) {
-      VolumePoint point{position, {}, inside};
-      for (std::size_t i = 0; i < 3; ++i) point.direction[i] = ((signs >> i) & 1U) != 0 ? 1 : -1;
-      points.push_back(point);
+    const std::size_t first = points.size();
+    points.push_back({position, {}, inside});
+    for (const AxisName axis : axes) {
+      const std::size_t a = index_of(axis);
+      for (std::size_t i = first; i < points.size(); ++i) points[i].direction[a] = -1;
+      if (!directed[a]) continue;
+      for (std::size_t i = first, end = points.size(); i < end; ++i) {
+        points.push_back(points[i]);
+        points.back().direction[a] = 1;
+      }
     }
   }
 }
@@ -81,32 +108,6 @@ class SpreadRotaryAxes {
   std::vector<AxisName> axes_;
   double step_ = 0.0;
 };
-
-using AxesByName = std::array<bool, kAxisCount>;
-
-/// Axes that are not `directed` are approached from -.
-std::vector<VolumePoint> linear_poses(const Machine& machine, const AxesByName& directed,
-                                      int cells_per_axis) {
-  const std::vector<AxisName> axes = machine.linear_axes();
-  std::vector<VolumePoint> poses;
-  const auto add_approaches_of = [&](const AxisPosition& place, bool inside) {
-    const std::size_t first = poses.size();
-    poses.push_back({place, {}, inside});
-    for (const AxisName axis : axes) {
-      const std::size_t a = index_of(axis);
-      for (std::size_t i = first; i < poses.size(); ++i) poses[i].direction[a] = -1;
-      if (!directed[a]) continue;
-      for (std::size_t i = first, end = poses.size(); i < end; ++i) {
-        poses.push_back(poses[i]);
-        poses.back().direction[a] = 1;
-      }
-    }
-  };
-  for (const AxisPosition& place : spread_places(machine, axes, cells_per_axis))
-    add_approaches_of(place, true);
-  for (const AxisPosition& place : ends_of_travel(machine, axes)) add_approaches_of(place, false);
-  return poses;
-}
 
 }  // namespace
 
@@ -158,34 +159,33 @@ std::vector<AxisPosition> ends_of_travel(const Machine& machine, const std::vect
 std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis) {
   std::vector<VolumePoint> points;
   const std::vector<AxisName> axes = machine.main_linear_axes();
-  add_approaches(spread_places(machine, axes, cells_per_axis), true, points);
-  add_approaches(ends_of_travel(machine, axes), false, points);
+  add_approaches(spread_places(machine, axes, cells_per_axis), kLinearAxes, kAllDirected, true, points);
+  add_approaches(ends_of_travel(machine, axes), kLinearAxes, kAllDirected, false, points);
   return points;
 }
 
-std::vector<VolumePoint> volume_poses(const Machine& machine, const MachineEffects& effects,
-                                      int cells_per_axis) {
-  AxesByName directed{};
-  for (const std::size_t effect : effects.numbers()) {
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis)
-      directed[axis] |= effects.reach(effect).direction[axis];
-  }
-  return linear_poses(machine, directed, cells_per_axis);
-}
-
-std::vector<VolumePoint> turned_volume_poses(const Machine& machine, const std::vector<AxisName>& turned,
-                                             int cells_per_axis) {
-  AxesByName directed;
-  directed.fill(true);
-  std::vector<VolumePoint> poses = linear_poses(machine, directed, cells_per_axis);
+std::vector<VolumePose> volume_poses(const Machine& machine, const Tool& tool, const MachineEffects& effects,
+                                     const std::vector<AxisName>& turned, int cells_per_axis) {
+  const std::vector<AxisName> axes = machine.linear_axes();
+  const AxesByName directed = turned.empty() ? directed_axes(effects) : kAllDirected;
+  std::vector<VolumePoint> points;
+  add_approaches(spread_places(machine, axes, cells_per_axis), axes, directed, true, points);
+  add_approaches(ends_of_travel(machine, axes), axes, directed, false, points);
   const SpreadRotaryAxes rotary(machine, turned);
-  for (std::size_t i = 0; i < poses.size(); ++i) rotary.place(i, poses[i].position, poses[i].direction);
+  const KinematicChain chain(machine);
+  std::vector<VolumePose> poses;
+  for (VolumePoint& point : points) {
+    rotary.place(poses.size(), point.position, point.direction);
+    poses.push_back({point, turned.empty() ? place_of(machine, point.position)
+                                           : chain.nominal_point_w(point.position, tool.offset)});
+  }
   return poses;
 }
 
 std::vector<VolumePoint> volume_lattice(const Machine& machine, int cells_per_axis) {
   std::vector<VolumePoint> points;
-  add_approaches(at_shares(machine, machine.main_linear_axes(), middles(cells_per_axis)), true, points);
+  add_approaches(at_shares(machine, machine.main_linear_axes(), middles(cells_per_axis)), kLinearAxes,
+                 kAllDirected, true, points);
   return points;
 }
 

@@ -41,14 +41,15 @@ struct VolumePoint {
 /// spread_places() of X, Y, Z and after them ends_of_travel(), each approached from + and - in all
 /// combinations.
 std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis);
+struct VolumePose : VolumePoint {
+  Eigen::Vector3d place_w;  ///< of the functional point, m; without turned axes but for a constant
+};
 /// The same of all linear axes, parallel ones too, for errors with these effects: axes whose direction makes
-/// no difference to them are approached from -.
-std::vector<VolumePoint> volume_poses(const Machine& machine, const MachineEffects& effects,
-                                      int cells_per_axis);
-/// The same with rotary axes `turned`: they take a position of their own at each of these places and
-/// directions of approach, spread evenly over their travel; others stand at 0.
-std::vector<VolumePoint> turned_volume_poses(const Machine& machine, const std::vector<AxisName>& turned,
-                                             int cells_per_axis);
+/// no difference to them are approached from -. Rotary axes `turned` take a position and directions of their
+/// own at each of these places and all directions of approach, spread evenly over their travel; others stand
+/// at 0.
+std::vector<VolumePose> volume_poses(const Machine& machine, const Tool& tool, const MachineEffects& effects,
+                                     const std::vector<AxisName>& turned, int cells_per_axis);
 /// The middles of the cells, a lattice: for what is solved by positions of the axes.
 std::vector<VolumePoint> volume_lattice(const Machine& machine, int cells_per_axis);
 

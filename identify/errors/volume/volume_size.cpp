@@ -8,7 +8,6 @@
 #include "volcal/identify/errors/volume/volume_moments.h"
 #include "volcal/identify/errors/volume/volume_points.h"
 #include "volcal/identify/numeric/dense.h"
-#include "volcal/model/kinematics/chain.h"
 
 namespace volcal {
 namespace {
@@ -40,16 +39,10 @@ class PosesOfVolume {
   PosesOfVolume(const FitResult& result, const Tool& tool, const Conditions& conditions, int cells_per_axis)
       : covariance_(result.covariance), moments_(result.layout.size + 1) {
     const ErrorField field(result, tool, conditions);
-    const KinematicChain chain(result.machine);
-    const std::vector<AxisName> turned = identified_rotary_axes(result);
-    const std::vector<VolumePoint> poses = turned.empty()
-                                               ? volume_poses(result.machine, field.effects(), cells_per_axis)
-                                               : turned_volume_poses(result.machine, turned, cells_per_axis);
-    for (const VolumePoint& pose : poses) {
-      const Eigen::Vector3d place = turned.empty() ? place_of(result.machine, pose.position)
-                                                   : chain.nominal_point_w(pose.position, tool.offset);
-      poses_.push_back(rows_of(field, pose, place));
-      if (pose.inside) moments_.add(place, poses_.back().all(parameters()));
+    for (const VolumePose& pose : volume_poses(result.machine, tool, field.effects(),
+                                               identified_rotary_axes(result), cells_per_axis)) {
+      poses_.push_back(rows_of(field, pose));
+      if (pose.inside) moments_.add(pose.place_w, poses_.back().all(parameters()));
     }
     motions_ = moments_.rigid_motions();
     with_motions_ = covariance_ * motions_.leftCols(parameters()).transpose();
@@ -75,7 +68,7 @@ class PosesOfVolume {
   }
 
  private:
-  static RowsOfPose rows_of(const ErrorField& field, const VolumePoint& pose, const Eigen::Vector3d& place) {
+  static RowsOfPose rows_of(const ErrorField& field, const VolumePose& pose) {
     const Rows rows = field.unheld_rows(pose.position, pose.direction).topRows<3>();
     RowsOfPose of_pose;
     for (Eigen::Index j = 0; j < rows.cols(); ++j) {
@@ -83,7 +76,7 @@ class PosesOfVolume {
     }
     of_pose.columns = rows(Eigen::all, of_pose.acting);
     of_pose.error = field.at(pose.position, pose.direction).head<3>();
-    of_pose.rigid = rigid_motion_rows(place);
+    of_pose.rigid = rigid_motion_rows(pose.place_w);
     return of_pose;
   }
   Eigen::Index parameters() const { return covariance_.rows(); }
@@ -164,8 +157,7 @@ VolumeSize::VolumeSize(const FitResult& result, const Tool& tool, const Conditio
   rms_ = std::sqrt(mean_square);
   u_ = std::sqrt(
       std::max(0.0, moments.topLeftCorner(parameters, parameters).cwiseProduct(result.covariance).sum()));
-  rms_row_ = rms_ > 0.0 ? Eigen::VectorXd(moments.col(parameters).head(parameters) / rms_)
-                        : Eigen::VectorXd(Eigen::VectorXd::Zero(parameters));
+  rms_row_ = moments.col(parameters).head(parameters) * (rms_ > 0.0 ? 1.0 / rms_ : 0.0);
 }
 
 VolumeSize::Sizes VolumeSize::sizes(const Eigen::Ref<const Eigen::MatrixXd>& values) const {

@@ -417,6 +417,44 @@ TEST(MaximiseEvidence, FindsTheStandardDeviation) {
   EXPECT_NEAR(state.scale[0], 0.5, 0.05);
 }
 
+TEST(MaximiseEvidence, IntegratesOutWhatIsNotSmoothed) {
+  DirectReadings readings(6, {4e-6, 8e-6});
+  NoiseGroupEquations& own = readings.equations[0];
+  const Eigen::Index n = own.matrix.rows(), half = n / 2;
+  const double weight = 1.0 / (readings.sigma * readings.sigma), wide = 1.0 / (1e-4 * 1e-4);
+  // An offset of all readings beside the functions.
+  Eigen::VectorXd coupling(n);
+  coupling << readings.rows.colwise().sum().transpose(), readings.rows.colwise().sum().transpose();
+  coupling *= weight;
+  const double information = weight * 2.0 * static_cast<double>(readings.q.size()) + wide;
+  const double pull = -weight * (readings.values[0].sum() + readings.values[1].sum());
+  NoiseGroupEquations with_offset{Eigen::MatrixXd::Zero(n + 1, n + 1), Eigen::VectorXd(n + 1), own.squares,
+                                  own.observations};
+  with_offset.matrix.topLeftCorner(n, n) = own.matrix;
+  with_offset.matrix.col(n).head(n) = coupling;
+  with_offset.matrix.row(n).head(n) = coupling.transpose();
+  with_offset.matrix(n, n) = information - wide;
+  with_offset.gradient << own.gradient, pull;
+  GaussianPrior prior = GaussianPrior::none(static_cast<int>(n) + 1);
+  prior.precision(n, n) = wide;
+  std::vector<SmoothingTerm> terms = readings.terms;
+  const EvidenceOptions held{.variance_components = false};
+  const EvidenceState all =
+      maximise_evidence({with_offset}, Eigen::VectorXd::Zero(n + 1), prior, held, {1.0}, terms);
+
+  own.matrix -= coupling * coupling.transpose() / information;
+  own.gradient -= coupling * (pull / information);
+  const EvidenceState by_hand = maximise_evidence(readings.equations, Eigen::VectorXd::Zero(n),
+                                                  readings.prior, held, {1.0}, readings.terms);
+  for (std::size_t f = 0; f < 2; ++f) {
+    EXPECT_EQ(terms[f].offset, static_cast<int>(f) * half);
+    EXPECT_EQ(terms[f].shape, readings.terms[f].shape);
+    EXPECT_NEAR(terms[f].lambda / readings.terms[f].lambda, 1.0, 1e-6);
+  }
+  EXPECT_NEAR(all.log_evidence,
+              by_hand.log_evidence + 0.5 * (pull * pull / information - std::log(information)), 1e-5);
+}
+
 TEST(AmplitudeCovariance, IsThatOfDifferencesOfTheDenseLikelihood) {
   DirectReadings readings(6, {4e-6});
   SmoothingTerm& term = readings.terms[0];

@@ -82,7 +82,7 @@ void add_tool_errors(MetadataWriter& out, const FitResult& result) {
 
 /// Of axes of which a part was measured.
 void add_measured(MetadataWriter& out, const FitResult& result) {
-  for (const auto& [axis, ends] : model_with_measured_travel(result).measured) {
+  for (const auto& [axis, ends] : model_of_result(result).measured) {
     const auto [unit, factor] = position_unit(axis);
     out.add_number(fmt::format("axis.{}.measured_from_{}", letter_of(axis), unit), ends.first / factor);
     out.add_number(fmt::format("axis.{}.measured_to_{}", letter_of(axis), unit), ends.second / factor);

@@ -31,6 +31,7 @@ class StatedLayout {
       block.location = symbol;
     }
     for (const EffectSpec& spec : model.effects) add_effect(spec, model.file);
+    for (const auto& [tool, error] : model.tool_errors) add_tool(tool, error);
     layout_.size = size();
   }
 
@@ -78,6 +79,21 @@ class StatedLayout {
                 amplitude.si_per_unit());
   }
 
+  void add_tool(const std::string& tool, const Eigen::Vector3d& error) {
+    ParameterBlock block;
+    block.kind = ParameterKind::ToolOffset;
+    block.name = tool_parameter(tool);
+    block.labels = {"x", "y", "z"};
+    block.units = {"um", "um", "um"};
+    block.si_per_unit = {kMicro, kMicro, kMicro};
+    block.prior_mean = block.guess = error;
+    block.prior_sigma = Eigen::VectorXd::Zero(3);
+    block.is_held = true;
+    block.offset = size();
+    layout_.blocks.push_back(std::move(block));
+    values_.insert(values_.end(), error.begin(), error.end());
+  }
+
   ParameterLayout layout_;
   std::vector<double> values_;
 };
@@ -116,24 +132,8 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model) {
   return result;
 }
 
-void state_tool_error(const std::string& tool, const Eigen::Vector3d& offset_error, FitResult& result) {
-  ParameterBlock block;
-  block.kind = ParameterKind::ToolOffset;
-  block.name = tool_parameter(tool);
-  block.labels = {"x", "y", "z"};
-  block.units = {"um", "um", "um"};
-  block.si_per_unit = {kMicro, kMicro, kMicro};
-  block.prior_mean = block.prior_sigma = Eigen::VectorXd::Zero(3);
-  block.guess = offset_error;
-  block.offset = result.layout.size;
-  result.layout.blocks.push_back(std::move(block));
-  result.layout.size += 3;
-  result.parameters.conservativeResize(result.layout.size);
-  result.parameters.tail<3>() = offset_error;
-}
-
 bool states_errors(const ModelSpec& model) {
-  return !model.locations.empty() || !model.effects.empty() ||
+  return !model.locations.empty() || !model.effects.empty() || !model.tool_errors.empty() ||
          std::ranges::any_of(model.functions,
                              [](const auto& entry) { return !entry.second.coefficients.empty(); });
 }
@@ -152,7 +152,8 @@ std::vector<EffectSpec> effects_without_amplitude(const ModelSpec& model) {
 void require_stated_errors(const ModelSpec& model) {
   if (!states_errors(model))
     throw InputError(
-        {model.file, 0}, "the model states no error: no coefficients, no locations, no effects",
+        {model.file, 0},
+        "the model states no error: no coefficients, no locations, no effects, no offset errors of tools",
         "give a model with values, such as the identified.toml of a result; of a machine that is "
         "not built yet, volcal budget MACHINE.toml --tolerances FILE");
   for (const EffectSpec& spec : effects_without_amplitude(model)) {

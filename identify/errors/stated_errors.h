@@ -9,16 +9,15 @@
 
 namespace volcal {
 
-/// Functions with coefficients, known locations and effects with their amplitudes; what has no value is zero.
+/// Functions with coefficients, known locations, effects with their amplitudes and errors of tools' offsets;
+/// what has no value is zero.
 /// Beyond model.measured errors keep their last value. No covariance. What model.conditions says stands for
 /// the campaign; without it temperatures that effects name are assumed at 20 degC, time and feed at 0, until
 /// they are stated.
 FitResult stated_result(const Machine& machine, const ModelSpec& model);
 
-/// Adds to a stated result the displacement of a tool's offset, m.
-void state_tool_error(const std::string& tool, const Eigen::Vector3d& offset_error, FitResult& result);
-
-/// Whether a model states an error: a function with coefficients, a known location, an effect.
+/// Whether a model states an error: a function with coefficients, a known location, an effect, the error of a
+/// tool's offset.
 bool states_errors(const ModelSpec& model);
 
 /// Those that count as nothing where no fit follows.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/parameter_names.h"
 
 namespace volcal {
 namespace {
@@ -62,9 +63,13 @@ std::map<AxisName, std::pair<double, double>> measured_positions(const FitResult
   return positions;
 }
 
-ModelSpec model_with_measured_travel(const FitResult& result) {
+ModelSpec model_of_result(const FitResult& result) {
   constexpr double kSameEnd = 1e-6;  // m or rad
   ModelSpec model = result.identified;
+  for (const Tool& tool : result.machine.tools) {
+    if (const ParameterBlock* block = result.layout.find_block(tool_parameter(tool.name)))
+      model.tool_errors[tool.name] = result.parameters.segment<3>(block->offset);
+  }
   if (!model.effects.empty()) model.conditions = of_campaign(result.conditions);
   for (const auto& [axis, ends] : measured_positions(result)) {
     if (!result.machine.has_axis(axis)) continue;

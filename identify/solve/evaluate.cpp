@@ -28,7 +28,7 @@ constexpr double kUnheldNuisance = 1.0;  // m or rad: far wider than anything a 
 
 bool is_frozen_with_the_model(const ParameterBlock& block) {
   return block.kind == ParameterKind::Location || block.kind == ParameterKind::Effect ||
-         block.kind == ParameterKind::EffectShape;
+         block.kind == ParameterKind::EffectShape || block.is_held;
 }
 
 /// Model parameters' place in both the fit's and the evaluation's vectors (the same model gives the same
@@ -423,7 +423,7 @@ std::vector<Finding> contradicted_nuisance(const Evaluation& evaluation) {
 Validation validate(const Campaign& campaign, const FitResult& result, int threads) {
   Validation validation;
   validation.before = evaluate_model(campaign, nominal_model(), nullptr, threads);
-  const ModelSpec model = model_with_measured_travel(result);
+  const ModelSpec model = model_of_result(result);
   const bool is_exact =
       result.covariance.isZero(0.0) && rotary_axes_without_errors(campaign, frozen_model(model)).empty();
   validation.after = evaluate_model(campaign, model, is_exact ? nullptr : &result, threads);

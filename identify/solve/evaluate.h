@@ -1,6 +1,7 @@
 #pragma once
 /// A given model on readings that did not make it: error functions frozen, only the campaign's nuisance
-/// parameters (stations, dead paths, alignments, tool and scale errors with priors) re-estimated.
+/// parameters (stations, dead paths, alignments, tool and scale errors with priors) re-estimated. What a
+/// model says of a tool's offset is where its prior stands, and held where the machine file calls it exact.
 
 #include <memory>
 #include <optional>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <optional>
 
 #include "volcal/identify/numeric/dense.h"
@@ -21,6 +20,7 @@
 #include "volcal/identify/solve/verdict.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/driver_check.h"
 #include "volcal/model/observation/channels.h"
 
@@ -506,7 +506,7 @@ FitResult fit(const Campaign& campaign, const ModelSpec& spec, const FitOptions&
   }
   check_drivers_vary(campaign, spec);
   use_single_threaded_blas();
-  return Identification(campaign, spec, options).run();
+  return Identification(campaign, with_uncertain_tools_open(campaign, spec), options).run();
 }
 
 }  // namespace volcal

@@ -37,7 +37,8 @@ struct FitOptions {
   std::function<void(const std::string& stage, double done)> progress;
 };
 
-/// Throws InputError for a campaign that cannot be used.
+/// Errors of tools' offsets that the model knows are held, those of tools whose offset the machine file calls
+/// uncertain estimated. Throws InputError for a campaign that cannot be used.
 FitResult fit(const Campaign& campaign, const ModelSpec& spec, const FitOptions& options = {});
 
 }  // namespace volcal

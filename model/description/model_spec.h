@@ -2,6 +2,7 @@
 /// What we assume of a machine: bases of the error functions, effects beyond the rigid body, known values.
 /// Plain data as a model file holds it; SI units.
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -52,6 +53,9 @@ struct ModelSpec {
   std::map<ErrorSymbol, FunctionSpec> functions;  ///< where the user departs from the default
   std::map<LocationSymbol, double> locations;     ///< known values, rad or m (an identified model)
   std::vector<LocationSymbol> locations_off;      ///< left out of the model: held at zero
+  /// What tools' offsets are known to be wrong by, actual minus stated, m (an identified model). A tool whose
+  /// offset the machine file calls uncertain is estimated anew by a fit; that of any other tool is held.
+  std::map<std::string, Eigen::Vector3d> tool_errors;
   std::vector<EffectSpec> effects;
   PriorWidths priors;
   /// Positions with readings that stated errors follow from, m or rad, first and last: beyond them errors

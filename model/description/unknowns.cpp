@@ -115,6 +115,14 @@ ModelSpec with_rotary_errors(const Machine& machine, ModelSpec model, const std:
   return model;
 }
 
+ModelSpec with_uncertain_tools_open(const Campaign& campaign, ModelSpec model) {
+  for (const Setup& setup : campaign.setups) {
+    const Tool& tool = campaign.machine.tools[setup.tool];
+    if (tool.offset_sigma > 0.0) model.tool_errors.erase(tool.name);
+  }
+  return model;
+}
+
 std::vector<ErrorSymbol> modelled_motions(const Machine& machine, const ModelSpec& model) {
   std::vector<ErrorSymbol> symbols;
   for (const Axis& axis : machine.axes) add_motions(axis.name, symbols);

@@ -39,6 +39,10 @@ FunctionSpec usual_function(const Axis& axis);
 ModelSpec with_rotary_errors(const Machine& machine, ModelSpec model, const std::vector<AxisName>& moving,
                              const std::vector<LocationSymbol>& locations);
 
+/// The model without what it says of tools of the campaign whose offset the machine file calls uncertain:
+/// readings of a fit tell that, from the stated offset on.
+ModelSpec with_uncertain_tools_open(const Campaign& campaign, ModelSpec model);
+
 /// Error motions with a function: of a linear axis all, of a rotary one those that the model names. The
 /// function may be the basis "zero", which has no parameters.
 std::vector<ErrorSymbol> modelled_motions(const Machine& machine, const ModelSpec& model);

@@ -68,15 +68,17 @@ ParameterBlock shape_block(const EffectShape& shape) {
   return block;
 }
 
-ParameterBlock tool_block(const Tool& tool) {
+/// `known`: what its offset is known to be wrong by.
+ParameterBlock tool_block(const Tool& tool, const Eigen::Vector3d& known) {
   ParameterBlock block;
   block.kind = ParameterKind::ToolOffset;
   block.name = tool_parameter(tool.name);
   block.labels = {"x", "y", "z"};
   block.units = {"um", "um", "um"};
   block.si_per_unit = {kMetrePerMicrometre, kMetrePerMicrometre, kMetrePerMicrometre};
-  block.guess = block.prior_mean = Eigen::VectorXd::Zero(3);
+  block.guess = block.prior_mean = known;
   block.prior_sigma = Eigen::VectorXd::Constant(3, tool.offset_sigma);
+  block.is_held = tool.offset_sigma == 0.0;
   return block;
 }
 
@@ -152,6 +154,7 @@ class CampaignBinder {
     for (const Axis& axis : machine_.axes) add_expansion(axis);
     for (const EffectSpec& effect : spec_.effects) add_effect(effect);
     for (const Setup& setup : campaign_.setups) add_tool(setup.tool);
+    add_unused_tools();
     for (const Setup& setup : campaign_.setups) add_setup(setup);
     tabulate_effects();
     return std::move(binding_);
@@ -300,9 +303,23 @@ class CampaignBinder {
     return held;
   }
 
-  void add_tool(std::size_t tool) {
-    if (machine_.tools[tool].offset_sigma == 0.0 || tool_parameter_.contains(tool)) return;
-    tool_parameter_[tool] = add_block(tool_block(machine_.tools[tool]));
+  void add_tool(std::size_t number) {
+    const Tool& tool = machine_.tools[number];
+    const auto known = spec_.tool_errors.find(tool.name);
+    const bool is_known = known != spec_.tool_errors.end();
+    if ((tool.offset_sigma == 0.0 && !is_known) || tool_parameter_.contains(number)) return;
+    tool_parameter_[number] = add_block(tool_block(tool, is_known ? known->second : Eigen::Vector3d::Zero()));
+  }
+
+  /// Of tools that no setup has and whose error is known: results have it, too.
+  void add_unused_tools() {
+    for (std::size_t number = 0; number < machine_.tools.size(); ++number) {
+      const auto known = spec_.tool_errors.find(machine_.tools[number].name);
+      if (known == spec_.tool_errors.end() || tool_parameter_.contains(number)) continue;
+      ParameterBlock block = tool_block(machine_.tools[number], known->second);
+      block.is_held = true;
+      add_block(std::move(block));
+    }
   }
 
   void add_setup(const Setup& setup) {

@@ -90,7 +90,7 @@ struct ExpansionBinding {
 struct SetupBinding {
   std::unique_ptr<BoundSetup> bound;
   std::vector<int> nuisance;  ///< global index of every parameter of the setup's concatenated blocks
-  int tool_error = -1;        ///< global index of the tool's offset error, -1 = exact
+  int tool_error = -1;        ///< global index of the tool's offset error, -1 = none
   Eigen::Vector3d tool_offset = Eigen::Vector3d::Zero();
   std::vector<ExpansionBinding> expansions;
   double noise_constant[kMaxChannels] = {};  ///< of the noise table, m or rad

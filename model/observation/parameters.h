@@ -43,6 +43,7 @@ struct ParameterBlock {
   Eigen::VectorXd prior_mean;
   Eigen::VectorXd prior_sigma;  ///< 0 = no prior
   bool weak_default_prior = false;
+  bool is_held = false;  ///< known and not estimated: a DatumSpace leaves it at its value
 
   int size() const { return static_cast<int>(guess.size()); }
   /// By the symbol of a location error, else by its name.

@@ -68,7 +68,7 @@ void require_same_machine(const std::string& name, const Machine& machine, const
 }
 
 GivenModel given_result(const std::string& name, const FitResult& result, const Campaign& campaign) {
-  GivenModel model{name, name, model_with_measured_travel(result), refittable_model(result), true, &result};
+  GivenModel model{name, name, model_of_result(result), refittable_model(result), true, &result};
   if (is_in_other_frame(result, campaign.machine)) adopt_alignment(model.aligned.emplace(campaign), result);
   require_same_machine(name, result.machine, model.readings(campaign).machine);
   return model;

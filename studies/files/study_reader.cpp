@@ -194,7 +194,7 @@ sim::TruthSettings known_truth(const std::string& path, const Machine& machine, 
     throw InputError({path, 0}, "the errors are those of another machine than the study's: " + difference,
                      "name the machine of these errors in the study (beside a result: its machine.toml)");
   sim::TruthSettings truth;
-  truth.errors = model_with_measured_travel(known);
+  truth.errors = model_of_result(known);
   truth.errors_file = path;
   if (truth.errors->file.empty()) truth.errors->file = path;
   truth.notes = findings_of_tables(known);

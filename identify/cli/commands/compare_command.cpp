@@ -102,7 +102,7 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
                        "compare with a result of the same machine");
     }
     return {argument,
-            model_with_measured_travel(result),
+            model_of_result(result),
             refittable_model(result),
             true,
             result,

@@ -124,7 +124,7 @@ int run_validate(const ValidateArguments& arguments) {
     missing.data["in_uncertainty"] = true;
     campaign.notes.push_back(std::move(missing));
   }
-  std::ranges::move(held_beyond_measured(campaign, model_with_measured_travel(result)),
+  std::ranges::move(held_beyond_measured(campaign, model_of_result(result)),
                     std::back_inserter(campaign.notes));
   std::ranges::move(findings_of_tables(result, tools_of_setups(campaign)),
                     std::back_inserter(campaign.notes));

@@ -21,6 +21,8 @@ namespace {
 
 constexpr std::int64_t kMostIntervals = 500;
 constexpr double kSamePosition = 1e-9;  // m or rad
+constexpr const char* kToolErrorKey = "offset_error_um";
+constexpr double kLargestToolError = 0.01;  // m
 
 std::string coefficient_key(ErrorSymbol symbol) {
   return "coefficients_" + std::string(edge_unit(symbol.component));
@@ -32,6 +34,12 @@ std::vector<std::string> function_names(const Machine& machine) {
     for (const Component component : kAllComponents)
       names.push_back(ErrorSymbol{component, axis.name}.name());
   }
+  return names;
+}
+
+std::vector<std::string> tool_names(const Machine& machine) {
+  std::vector<std::string> names;
+  for (const Tool& tool : machine.tools) names.push_back(tool.name);
   return names;
 }
 
@@ -50,6 +58,7 @@ class ModelReader {
     read_locations();
     read_priors();
     read_measured();
+    read_tools();
     read_effects();
     document.reject_unknown();
     check_default();
@@ -328,6 +337,24 @@ class ModelReader {
       spec_.conditions.temperature_degC[variable->subject] = range;
     if (variable->kind == Variable::Kind::Time) spec_.conditions.time = range;
     if (variable->kind == Variable::Kind::Feed) spec_.conditions.feed = range;
+  }
+
+  /// "[tools.long] offset_error_um = [1.2, -3.4, 0.5]"
+  void read_tools() {
+    const auto tools = root_.table("tools");
+    if (!tools) return;
+    for (const std::string& name : tools->keys()) {
+      if (!machine_.tool_index(name))
+        tools->fail(name, "tools." + printable(name) + " is not a tool of this machine",
+                    suggest_name(name, tool_names(machine_), "tools"));
+      const TomlTable table = tools->required_table(name);
+      const Eigen::Vector3d error = table.required_vector3(kToolErrorKey);
+      if (error.cwiseAbs().maxCoeff() > kLargestToolError)
+        table.fail(
+            kToolErrorKey, table.path() + "." + kToolErrorKey + " is beyond 10 mm",
+            "write it in um; an offset that is wrong by more belongs into offset_mm of the machine file");
+      spec_.tool_errors[name] = error;
+    }
   }
 
   void fail_location(const TomlTable& table, const std::string& key,

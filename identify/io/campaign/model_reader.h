@@ -1,11 +1,13 @@
 #pragma once
-/// model.toml: bases of the error functions, known or switched-off errors, effects beyond the rigid body.
+/// model.toml: bases of the error functions, known or switched-off errors, effects beyond the rigid body,
+/// errors of tools' offsets.
 ///
 /// Functions: `basis`, `degree`, `knots = "auto"` or a number of intervals, or `knots_mm` / `knots_deg`
 /// (breakpoints, ends included); an identified function also has `coefficients_um` / `coefficients_urad`. A
 /// function is left out with basis = "zero". `[locations]`: `EC0Y_urad = 12.3` (known), `EC0Y = "zero"` (left
 /// out). `[priors]`: `displacement_um`, `rotation_urad`, `squareness_mrad`, how large errors may be before
-/// any reading is seen (standard deviations).
+/// any reading is seen (standard deviations). `[tools.long]`: `offset_error_um = [1.2, -3.4, 0.5]`, what the
+/// machine file's offset of that tool is known to be wrong by, actual minus stated.
 
 #include <map>
 #include <string>

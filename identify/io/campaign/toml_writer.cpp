@@ -125,6 +125,14 @@ std::string measured_toml(const ModelSpec& spec) {
   return text.empty() ? text : "\n[measured]\n" + text;
 }
 
+std::string tools_toml(const ModelSpec& spec) {
+  std::string text;
+  for (const auto& [tool, error] : spec.tool_errors)
+    text += fmt::format("\n[tools.{}]\noffset_error_um = {}\n", key_text(tool),
+                        array(error, kMetrePerMicrometre));
+  return text;
+}
+
 }  // namespace
 
 std::string effect_toml(const EffectSpec& effect) {
@@ -214,7 +222,7 @@ std::string model_toml(const ModelSpec& spec, const std::string& machine_path, c
         fmt::format("{}_{} = {}\n", symbol.name(), edge_unit(symbol.component), edge_number(value, kMicro));
   }
   for (const LocationSymbol& symbol : spec.locations_off) text += symbol.name() + " = \"zero\"\n";
-  text += priors_toml(spec.priors) + measured_toml(spec);
+  text += priors_toml(spec.priors) + measured_toml(spec) + tools_toml(spec);
   for (const EffectSpec& effect : spec.effects) text += effect_toml(effect);
   return text;
 }

@@ -140,9 +140,9 @@ FitResult result_of_tables(const std::filesystem::path& folder) {
   }
   model.measured = metadata.measured.empty() ? measured.ranges() : metadata.measured;
   model.conditions = metadata.conditions;
+  model.tool_errors = metadata.tool_errors;
   FitResult result = stated_result(metadata.machine, model);
   result.alignment = metadata.alignment;
-  for (const auto& [tool, error] : metadata.tool_errors) state_tool_error(tool, error, result);
   add_finding_of_tables(metadata.made_for, result);
   return result;
 }

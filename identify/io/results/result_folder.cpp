@@ -37,7 +37,7 @@ void write_result_folder(const FitResult& result, const Campaign& campaign, cons
   write_residuals_csv(folder.path("residuals.csv"), result, campaign);
   folder.write("machine.toml", machine_toml(result.machine));
   folder.write("identified.toml",
-               model_toml(model_with_measured_travel(result), "machine.toml",
+               model_toml(model_of_result(result), "machine.toml",
                           origin_of(result, campaign) +
                               ".\nErrors are actual minus nominal, tool relative to workpiece."));
   for (const auto& [name, content] : more) folder.write(name, content);

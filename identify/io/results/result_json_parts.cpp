@@ -168,6 +168,7 @@ Json block_json(const ParameterBlock& block) {
                {"prior_sigma", vector(block.prior_sigma)},
                {"weak_default_prior", block.weak_default_prior}};
   if (block.location) json["location"] = block.location->name();
+  if (block.is_held) json["is_held"] = true;
   return json;
 }
 
@@ -184,6 +185,7 @@ ParameterBlock block_from(const Json& json) {
   block.prior_sigma = vector_from(json.at("prior_sigma"));
   block.weak_default_prior = json.at("weak_default_prior").get<bool>();
   if (json.contains("location")) block.location = location_symbol(json.at("location"));
+  block.is_held = json.value("is_held", false);
   const std::size_t size = block.labels.size();
   const auto count = static_cast<Eigen::Index>(size);
   if (block.units.size() != size || block.si_per_unit.size() != size || block.guess.size() != count ||
@@ -320,6 +322,7 @@ Json model(const ModelSpec& spec) {
   add_prior("displacement", spec.priors.displacement);
   add_prior("rotation", spec.priors.rotation);
   add_prior("squareness", spec.priors.squareness);
+  for (const auto& [tool, error] : spec.tool_errors) json["tool_errors"][tool] = vector(error);
   return json;
 }
 
@@ -335,6 +338,10 @@ ModelSpec model_from(const Json& json) {
   }
   for (const Json& name : json.at("locations_off")) spec.locations_off.push_back(location_symbol(name));
   for (const Json& effect : json.at("effects")) spec.effects.push_back(effect_from(effect));
+  if (json.contains("tool_errors")) {
+    for (const auto& [tool, error] : json.at("tool_errors").items())
+      spec.tool_errors[tool] = vector3_from(error);
+  }
   if (!json.contains("priors")) return spec;
   const Json& priors = json.at("priors");
   const auto width = [&priors](const char* key) {

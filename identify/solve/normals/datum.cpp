@@ -41,7 +41,7 @@ DatumSpace::DatumSpace(const ParameterLayout& layout, const Machine& machine, Ei
   }
   for (std::size_t i = 0; i < layout.blocks.size(); ++i) {
     const ParameterBlock& block = layout.blocks[i];
-    if (!block_is_free(block)) continue;
+    if (block.is_held || !block_is_free(block)) continue;
     blocks_.push_back({i, block.offset, size_, block.size()});
     size_ += block.size();
     base_.segment(block.offset, block.size()).setZero();

@@ -35,11 +35,11 @@ class DatumSpace {
   };
 
   /// `base` gives frozen parameters their values; functions and blocks for which `is_free` is false are
-  /// frozen.
+  /// frozen, and so is every block that is held (ParameterBlock::is_held).
   DatumSpace(const ParameterLayout& layout, const Machine& machine, Eigen::VectorXd base,
              const std::function<bool(ErrorSymbol)>& function_is_free,
              const std::function<bool(const ParameterBlock&)>& block_is_free);
-  /// Everything free.
+  /// Everything free that is not held.
   DatumSpace(const ParameterLayout& layout, const Machine& machine, Eigen::VectorXd base);
 
   int size() const { return size_; }

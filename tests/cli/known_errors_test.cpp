@@ -195,6 +195,44 @@ TEST_F(KnownErrors, AModelIsValidatedOnReadings) {
   EXPECT_LT(figures.at("rms_after_um").get<double>(), 0.01);
 }
 
+/// The tool is off by the same at every point of a machine without rotary axes, whatever states it.
+TEST_F(KnownErrors, OfToolsActInEveryOutput) {
+  const std::string known = testing::content(path("known.toml"));
+  const std::string rigid = known.substr(0, known.find("[[effects]]"));
+  const std::string of_tool = "[tools.side_x]\noffset_error_um = [40.0, -30.0, 20.0]\n";
+  write("rigid.toml", rigid);
+  write("tool.toml", rigid + of_tool);
+  const auto error_of = [&](const std::string& errors, const std::string& tool) {
+    const Json json =
+        Json::parse(done("tables " + errors + " --tool " + tool + " --at X=100,Y=50,Z=-150 --json"));
+    return json.at("volumetric_errors")[0].at("error_um").get<std::vector<double>>();
+  };
+  done("tables " + path("tool.toml") + " --positions 401 -o " + path("tables"));
+  for (const std::string errors : {path("tool.toml"), path("tables")}) {
+    const auto with = error_of(errors, "side_x"), without = error_of(path("rigid.toml"), "side_x");
+    EXPECT_NEAR(with[0] - without[0], 40.0, 0.05) << errors;
+    EXPECT_NEAR(with[1] - without[1], -30.0, 0.05) << errors;
+    EXPECT_NEAR(with[2] - without[2], 20.0, 0.05) << errors;
+    EXPECT_NEAR(error_of(errors, "short")[0], error_of(path("rigid.toml"), "short")[0], 0.05) << errors;
+  }
+  const Json causes = Json::parse(done("budget " + path("tool.toml") + " --tool side_x --json")).at("causes");
+  EXPECT_TRUE(std::ranges::any_of(causes, [](const Json& cause) { return cause.at("name") == "tool"; }));
+  write("two-tools.toml", testing::content(path("study.toml")) +
+                              "stations = [{ name = \"P1\", position_mm = [-700, -500, -600] }]\n"
+                              "runs = [{ station = \"P1\", tool = \"short\" }, "
+                              "{ station = \"P1\", tool = \"side_x\" }]\n");
+  done("simulate " + path("two-tools.toml") + " --errors " + path("tool.toml") + " -o " + path("campaign"));
+  EXPECT_LT(left("campaign", path("tool.toml")).second, 0.05);
+  EXPECT_GT(left("campaign", path("rigid.toml")).second, 5.0);
+  const auto rms_after = [&](const std::string& model) {
+    return Json::parse(done("validate " + path(model) + " " + path("campaign/campaign.toml") + " --json"))
+        .at("rms_after_um")
+        .get<double>();
+  };
+  EXPECT_LT(rms_after("tool.toml"), 0.02);
+  EXPECT_GT(rms_after("rigid.toml"), 3.0);
+}
+
 TEST_F(KnownErrors, WhatMakesNoSenseIsRefusedWithARemedy) {
   write("empty.toml", "format = \"volcal-model-1\"\nmachine = \"" + testing::kDemoMachine + "\"\n");
   refused("budget " + path("empty.toml"), "states no error", "--tolerances");

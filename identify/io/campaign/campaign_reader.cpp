@@ -29,12 +29,6 @@ std::vector<std::string> instrument_names() {
   return names;
 }
 
-std::vector<std::string> tool_names(const Machine& machine) {
-  std::vector<std::string> names;
-  for (const Tool& tool : machine.tools) names.push_back(tool.name);
-  return names;
-}
-
 /// A setup as declared: what to read from which file.
 struct DeclaredSetup {
   Setup setup;

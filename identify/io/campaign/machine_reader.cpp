@@ -219,4 +219,10 @@ Machine parse_machine(const std::string& text, const std::string& file) {
   return MachineReader(TomlDocument::parse(text, file), file).read();
 }
 
+std::vector<std::string> tool_names(const Machine& machine) {
+  std::vector<std::string> names;
+  for (const Tool& tool : machine.tools) names.push_back(tool.name);
+  return names;
+}
+
 }  // namespace volcal

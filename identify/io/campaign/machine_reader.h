@@ -2,6 +2,7 @@
 /// machine.toml: structure, datum, axes and tools of a machine.
 
 #include <string>
+#include <vector>
 
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/machine.h"
@@ -16,5 +17,8 @@ inline constexpr const char* kMachineFormat = "volcal-machine-1";
 Machine read_machine(const std::string& path, const SourcePlace& named_at = {});
 /// The same from text; `file` names it in messages.
 Machine parse_machine(const std::string& text, const std::string& file);
+
+/// For suggestions in messages.
+std::vector<std::string> tool_names(const Machine& machine);
 
 }  // namespace volcal

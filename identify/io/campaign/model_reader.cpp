@@ -37,12 +37,6 @@ std::vector<std::string> function_names(const Machine& machine) {
   return names;
 }
 
-std::vector<std::string> tool_names(const Machine& machine) {
-  std::vector<std::string> names;
-  for (const Tool& tool : machine.tools) names.push_back(tool.name);
-  return names;
-}
-
 class ModelReader {
  public:
   ModelReader(TomlTable root, const std::string& file, const Machine& machine)
@@ -482,13 +476,16 @@ std::map<ErrorSymbol, FunctionSpec> read_function_specs(const TomlTable& parent,
   return ModelReader(parent, parent.place().file, machine).functions();
 }
 
-ModelFile read_model_with_machine(const std::string& path, const SourcePlace& named_at) {
+ModelFile read_model_with_machine(const std::string& path, const SourcePlace& named_at,
+                                  const Machine* otherwise) {
   require_no_folder(path, named_at);
   const TomlDocument document = TomlDocument::read(path, named_at);
   document.require_format(kModelFormat);
   const TomlTable root = document.root();
   ModelFile file;
-  file.machine = read_machine(resolve_path(path, root.required_text("machine")), root.place("machine"));
+  file.machine = otherwise && !root.has("machine")
+                     ? *otherwise
+                     : read_machine(resolve_path(path, root.required_text("machine")), root.place("machine"));
   file.spec = ModelReader(root, path, file.machine).read(document);
   return file;
 }

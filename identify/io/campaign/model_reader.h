@@ -34,7 +34,9 @@ struct ModelFile {
   Machine machine;
   ModelSpec spec;
 };
-ModelFile read_model_with_machine(const std::string& path, const SourcePlace& named_at = {});
+/// `otherwise`: the machine of a file that names none; without it such a file is an error.
+ModelFile read_model_with_machine(const std::string& path, const SourcePlace& named_at = {},
+                                  const Machine* otherwise = nullptr);
 
 /// First difference between two machines that makes the errors of one meaningless for the other, in words;
 /// empty when there is none. Names and tools may differ.

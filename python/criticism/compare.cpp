@@ -13,9 +13,8 @@
 
 #include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/criticism/screening.h"
-#include "volcal/identify/errors/alignment.h"
 #include "volcal/identify/errors/stated_errors.h"
-#include "volcal/identify/io/campaign/model_reader.h"
+#include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/io/results/residual_writer.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/comparison_report.h"
@@ -60,23 +59,15 @@ struct ComparisonOf {
   }
 };
 
-void require_same_machine(const std::string& name, const Machine& machine, const Machine& of_campaign) {
-  const std::string difference = machine_difference(machine, of_campaign);
-  if (!difference.empty())
-    throw InputError({}, name + " belongs to another machine than the campaign: " + difference,
-                     "compare with a result of the same machine");
-}
-
 GivenModel given_result(const std::string& name, const FitResult& result, const Campaign& campaign) {
   GivenModel model{name, name, model_of_result(result), refittable_model(result), true, &result};
-  if (is_in_other_frame(result, campaign.machine)) adopt_alignment(model.aligned.emplace(campaign), result);
-  require_same_machine(name, result.machine, model.readings(campaign).machine);
+  model.aligned = readings_for(campaign, result, {name, 0});
   return model;
 }
 
 GivenModel given_spec(const std::string& name, const Model& given, const Campaign& campaign) {
-  require_same_machine(name, given.machine, campaign.machine);
   GivenModel model{name, name, given.spec, given.spec};
+  model.aligned = readings_for(campaign, stated_result(given.machine, given.spec), {name, 0});
   if (!states_errors(given.spec)) model.name = "nominal machine (" + name + " holds no coefficients)";
   return model;
 }

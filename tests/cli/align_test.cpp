@@ -82,6 +82,9 @@ TEST_F(AlignedResults, AreJudgedAsTablesAndModels) {
     return models.at(model).at("total").at("lengths_um").at("rms").get<double>();
   };
   EXPECT_NEAR(rms_of(1), rms_of(0), 0.02);
+  const auto of_model = json_of("compare " + campaign + " " + path("aligned/identified.toml")).at("models");
+  EXPECT_NEAR(of_model.at(0).at("total").at("lengths_um").at("rms").get<double>(),
+              rms_after("aligned/identified.toml"), 1e-6);
 }
 
 TEST_F(AlignedResults, ExplainACampaignAsBefore) {

@@ -16,7 +16,6 @@
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/criticism/screening.h"
-#include "volcal/identify/errors/alignment.h"
 #include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
@@ -62,17 +61,21 @@ struct NamedModel {
 /// Error tables as a model.
 NamedModel load_tables(const std::string& argument, const Campaign& campaign) {
   const FitResult tables = read_known_errors(argument);
-  std::optional<Campaign> aligned;
-  if (is_in_other_frame(tables, campaign.machine)) adopt_alignment(aligned.emplace(campaign), tables);
-  const Machine& machine = aligned ? aligned->machine : campaign.machine;
-  if (const std::string difference = machine_difference(tables.machine, machine); !difference.empty()) {
-    throw InputError({argument, 0}, "they belong to another machine than the campaign: " + difference,
-                     "compare with tables of the same machine");
-  }
   NamedModel model{argument, tables.identified, tables.identified, false};
   model.of_tables = findings_of_tables(tables, tools_of_setups(campaign));
-  model.aligned = std::move(aligned);
+  model.aligned = readings_for(campaign, tables, {argument, 0});
   return model;
+}
+
+NamedModel load_result(const std::string& argument, const Campaign& campaign) {
+  const FitResult result = read_result(argument);
+  return {argument,
+          model_of_result(result),
+          refittable_model(result),
+          true,
+          result,
+          findings_of_tables(result, tools_of_setups(campaign)),
+          readings_for(campaign, result, {argument, 0})};
 }
 
 std::string counts_as_nothing(const ModelSpec& model, const std::vector<EffectSpec>& effects) {
@@ -80,6 +83,17 @@ std::string counts_as_nothing(const ModelSpec& model, const std::vector<EffectSp
   for (const EffectSpec& spec : effects)
     labels += (labels.empty() ? "" : ", ") + effect_label(*find_effect(spec.kind)->make(spec, model.file));
   return "without an amplitude, taken as zero: " + labels;
+}
+
+/// With values or without, which a fit of held-out lines finds.
+NamedModel load_model(const std::string& argument, const Campaign& campaign) {
+  const ModelFile file = read_model_with_machine(argument, {}, &campaign.machine);
+  NamedModel model{argument, file.spec, file.spec, true};
+  model.aligned = readings_for(campaign, stated_result(file.machine, file.spec), {argument, 0});
+  if (!states_errors(model.spec)) model.name = "nominal machine (" + argument + " holds no coefficients)";
+  const std::vector<EffectSpec> without = effects_without_amplitude(model.spec);
+  if (!without.empty()) model.name += fmt::format(" ({})", counts_as_nothing(model.spec, without));
+  return model;
 }
 
 /// A result, a model file, a folder of error tables, or the word "nominal".
@@ -92,29 +106,8 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
                                     "--format csv, or the word nominal"));
   }
   if (is_tables_folder(argument)) return load_tables(argument, campaign);
-  if (is_result(argument) || std::filesystem::is_directory(argument)) {
-    const FitResult result = read_result(argument);
-    std::optional<Campaign> aligned;
-    if (is_in_other_frame(result, campaign.machine)) adopt_alignment(aligned.emplace(campaign), result);
-    const Machine& machine = aligned ? aligned->machine : campaign.machine;
-    if (const std::string difference = machine_difference(result.machine, machine); !difference.empty()) {
-      throw InputError({argument, 0}, "it belongs to another machine than the campaign: " + difference,
-                       "compare with a result of the same machine");
-    }
-    return {argument,
-            model_of_result(result),
-            refittable_model(result),
-            true,
-            result,
-            findings_of_tables(result, tools_of_setups(campaign)),
-            std::move(aligned)};
-  }
-  NamedModel model{argument, read_model(argument, campaign.machine), {}, true};
-  model.refittable = model.spec;
-  if (!states_errors(model.spec)) model.name = "nominal machine (" + argument + " holds no coefficients)";
-  const std::vector<EffectSpec> without = effects_without_amplitude(model.spec);
-  if (!without.empty()) model.name += fmt::format(" ({})", counts_as_nothing(model.spec, without));
-  return model;
+  if (is_result(argument) || std::filesystem::is_directory(argument)) return load_result(argument, campaign);
+  return load_model(argument, campaign);
 }
 
 /// residuals.csv, or residuals_A.csv and residuals_B.csv; comparison.json, comparison.txt, report.html.

@@ -3,10 +3,9 @@
 #include <CLI/CLI.hpp>
 
 #include "volcal/identify/cli/options/picture.h"
-#include "volcal/identify/errors/alignment.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
-#include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/campaign/record_reader.h"
+#include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/result/fitted_readings.h"
 #include "volcal/model/description/errors.h"
 
@@ -15,16 +14,11 @@ namespace {
 
 /// A campaign of the same machine, of whose readings nothing was identified.
 Campaign verifying_campaign(const std::string& file, const FitResult& result) {
-  Campaign campaign = read_campaign(file);
+  const Campaign campaign = read_campaign(file);
   if (fitted_readings(campaign, result).readings > 0)
     throw InputError({file, 0}, "--verified: the result was identified from readings of this campaign",
                      "name a campaign that was measured with the tables active");
-  adopt_alignment(campaign, result);
-  const std::string difference = machine_difference(result.machine, campaign.machine);
-  if (!difference.empty())
-    throw InputError({file, 0}, "--verified: its machine is not the one that was identified: " + difference,
-                     "name a campaign of the same machine");
-  return campaign;
+  return readings_for(campaign, result, {file, 0}).value_or(campaign);
 }
 
 void require_certificate_can_be_made(const CertificateArguments& arguments, bool written) {

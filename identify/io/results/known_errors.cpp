@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "volcal/identify/compensation/csv_tables.h"
+#include "volcal/identify/errors/alignment.h"
 #include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/io/campaign/model_reader.h"
@@ -154,6 +155,18 @@ FitResult result_of_model(const std::string& path, const SourcePlace& named_at) 
 }
 
 }  // namespace
+
+std::optional<Campaign> readings_for(const Campaign& campaign, const FitResult& errors,
+                                     const SourcePlace& place) {
+  std::optional<Campaign> aligned;
+  if (is_in_other_frame(errors, campaign.machine)) adopt_alignment(aligned.emplace(campaign), errors);
+  const std::string difference =
+      machine_difference(errors.machine, aligned ? aligned->machine : campaign.machine);
+  if (!difference.empty())
+    throw InputError(place, "the errors are those of another machine than the campaign: " + difference,
+                     "give errors and a campaign of the same machine");
+  return aligned;
+}
 
 bool is_tables_folder(const std::string& path) {
   std::error_code ignored;

@@ -176,6 +176,20 @@ TEST_F(MonteCarloCommand, StatesTheConditions) {
   EXPECT_THAT(unknown.errors, HasSubstr("T_row"));
 }
 
+/// In the words of every other command, and before the model is read that the fit needs.
+TEST_F(MonteCarloCommand, RefusesConditionsBeforeTheFit) {
+  ASSERT_EQ(run_program("simulate " + study_ + " -o " + path("campaign")).exit_code, 0);
+  const auto refused = [&](const std::string& conditions) {
+    const testing::ProgramRun run = run_program("montecarlo " + campaign() + " -m " + path("no-model.toml") +
+                                                " --conditions " + conditions + " -o " + path("refused"));
+    EXPECT_EQ(run.exit_code, 2) << conditions;
+    return run.errors;
+  };
+  EXPECT_THAT(refused("T_row=20"), HasSubstr("--conditions T_row: the result does not know this condition"));
+  EXPECT_THAT(refused("T_row=20"), HasSubstr("its campaign recorded "));
+  EXPECT_THAT(refused("time_s=late"), HasSubstr("--conditions time_s=late is not a number"));
+}
+
 TEST_F(MonteCarloCommand, SaysAsFitDoesWhatIsNotDetermined) {
   std::ofstream(study_, std::ios::app) << "stations = [{ name = \"P1\", position_mm = [-700, -500, -600] }]\n"
                                        << "runs = [{ station = \"P1\", tool = \"short\" }]\n";

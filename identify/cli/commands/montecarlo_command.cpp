@@ -263,6 +263,7 @@ int run_montecarlo(MonteCarloArguments arguments) {
   require_output_folder(arguments.output, {arguments.campaign, arguments.model});
   if (!arguments.resume) require_no_checkpoint(checkpoint_path(arguments));
   const Campaign campaign = read_campaign(arguments.campaign);
+  require_known_conditions(campaign, arguments.conditions);
   MonteCarloOptions options = study_options(arguments, campaign);
   ProgressBar bar("montecarlo");
   const FitResult fit_result = fitted(arguments, campaign, bar);

@@ -1,6 +1,7 @@
 #include "volcal/identify/cli/options/conditions_options.h"
 
 #include "volcal/identify/report/text/field_text.h"
+#include "volcal/identify/solve/summaries.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal::cli {
@@ -32,6 +33,13 @@ std::map<std::string, std::string> named_values(const std::string& option,
 
 Conditions conditions_of(const FitResult& result, const ConditionsArguments& arguments) {
   return stated_conditions(result, named_values("--conditions", arguments.given));
+}
+
+void require_known_conditions(const Campaign& campaign, const ConditionsArguments& arguments) {
+  FitResult unfitted;
+  unfitted.machine = campaign.machine;
+  unfitted.conditions = recorded_conditions(campaign);
+  conditions_of(unfitted, arguments);
 }
 
 }  // namespace volcal::cli

@@ -163,6 +163,8 @@ std::string_view to_string(QuantityKind kind) {
   return "";
 }
 
+std::string Quantity::functional_point() const { return tool.empty() ? "spindle reference" : "tool " + tool; }
+
 std::string Quantity::words() const {
   if (axis) {
     return fmt::format("{} at {:.6g} {}{}", name, position / position_unit(*axis).si_per_unit,
@@ -171,9 +173,10 @@ std::string Quantity::words() const {
                        : direction < 0 ? " -"
                                        : "");
   }
-  if (tool.empty()) return name;
-  if (!at) return fmt::format("volumetric error, {}, tool {}", name, tool);
-  return fmt::format("{} of tool {} at {:.6g}, {:.6g}, {:.6g} mm", name, tool, (*at)[0] / kMetrePerMillimetre,
+  if (!is_of_volume()) return name;
+  const std::string point = functional_point();
+  if (!at) return fmt::format("volumetric error, {}, {}", name, point);
+  return fmt::format("{} of {} at {:.6g}, {:.6g}, {:.6g} mm", name, point, (*at)[0] / kMetrePerMillimetre,
                      (*at)[1] / kMetrePerMillimetre, (*at)[2] / kMetrePerMillimetre);
 }
 
@@ -185,7 +188,7 @@ QuantitySet quantities_of(const FitResult& result, int grid_per_axis,
   add_parameters(result, list);
   add_surfaces(result, list);
   QuantitySet set;
-  for (const Tool& tool : result.machine.tools) {
+  for (const Tool& tool : result.machine.functional_tools()) {
     if (grid_per_axis <= 0) break;
     if (add_grid(result, tool, conditions, grid_per_axis, list))
       set.volumes.push_back(added_size(result, tool, conditions, list));

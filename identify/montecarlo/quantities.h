@@ -25,12 +25,18 @@ struct Quantity {
   std::optional<AxisName> axis;    ///< of a table value with a position
   double position = 0.0;           ///< m or rad
   int direction = 0;               ///< as in the tables
-  std::string tool;                ///< of a volumetric error
+  std::string tool;                ///< of a volumetric error; without a name the spindle reference
   std::optional<AxisPosition> at;  ///< of a volumetric error
   std::string unit;                ///< edge unit: "um", "urad", "mm", "ppm" ...
   double si_per_unit = 1.0;
   double estimate = 0.0;  ///< SI, of the fit
 
+  bool is_of_volume() const {
+    return kind == QuantityKind::VolumetricError || kind == QuantityKind::VolumetricRms ||
+           kind == QuantityKind::VolumetricMax;
+  }
+  /// "tool long", "spindle reference": of a volumetric error.
+  std::string functional_point() const;
   /// "EXX at 400 mm +", "station P1 x", "ex of tool long at 500, 300, 0 mm": for messages.
   std::string words() const;
 };
@@ -42,7 +48,7 @@ struct QuantitySet {
   Eigen::MatrixXd rows;
   /// The volume of one tool.
   struct Volume {
-    std::string tool;
+    std::string tool;  ///< without a name the spindle reference (Machine::functional_tools)
     VolumeSize size;
     std::size_t rms = 0;  ///< index of the quantity
     std::size_t largest = 0;

@@ -35,7 +35,7 @@ MonteCarloJson quantity_json(const QuantityResult& value) {
     json["position_unit"] = position_unit(*quantity.axis).suffix;
     json["direction"] = quantity.direction;
   }
-  if (!quantity.tool.empty()) json["tool"] = quantity.tool;
+  if (quantity.is_of_volume()) json["tool"] = quantity.tool;
   if (quantity.at) {
     for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z})
       json["at_mm"].push_back((*quantity.at)[index_of(axis)] / kMetrePerMillimetre);

@@ -8,10 +8,10 @@ namespace {
 std::string group_name(const Quantity& quantity) {
   switch (quantity.kind) {
     case QuantityKind::VolumetricError:
-      return "volume, tool " + quantity.tool + ", " + quantity.name;
+      return "volume, " + quantity.functional_point() + ", " + quantity.name;
     case QuantityKind::VolumetricRms:
     case QuantityKind::VolumetricMax:
-      return "volume, tool " + quantity.tool + ", |e| " + quantity.name;
+      return "volume, " + quantity.functional_point() + ", |e| " + quantity.name;
     default:
       return quantity.name;
   }

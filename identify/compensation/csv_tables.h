@@ -6,6 +6,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,11 @@ std::vector<TableFile> result_tables(const FitResult& result, const TableFormatO
 
 /// The options' conditions and tool for the tables of error functions.
 ErrorTableOptions function_options(const FitResult& result, const TableFormatOptions& options);
+
+/// Key of metadata.csv: whether the tables hold what former ones corrected, too; these are kept beside them
+/// (TableFormatOptions::active).
+inline constexpr std::string_view kSuperimposedOn = "superimposed_on", kSuperimposedOnNone = "none",
+                                  kSuperimposedOnFormer = "former tables";
 
 /// metadata.csv, key,value: machine, tool, lines, temperatures, run, conditions.
 std::string table_metadata_csv(const FitResult& result, const TableFormatOptions& options);

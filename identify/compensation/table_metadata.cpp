@@ -344,6 +344,7 @@ std::string table_metadata_csv(const FitResult& result, const TableFormatOptions
     const std::string_view otherwise = known ? std::string_view(result.active_compensations) : kNotRecorded;
     out.add(key, recorded == options.record.conditions.end() ? otherwise : recorded->second);
   }
+  out.add(kSuperimposedOn, options.active ? kSuperimposedOnFormer : kSuperimposedOnNone);
   return out.text();
 }
 

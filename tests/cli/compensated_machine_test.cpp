@@ -179,6 +179,43 @@ TEST_F(CompensatedCampaign, IsNotTakenForOneWithoutTables) {
   }
 }
 
+/// Errors identified with tables active, judged with those that were superimposed on them: what the former
+/// tables corrected stays in.
+TEST_F(CompensatedCampaign, IsJudgedByErrorsThatWereIdentifiedWithTheFormerTables) {
+  run("tables " + path("result") + " --format neutral-csv --type L-POS -o " + path("former"));
+  run("simulate " + path("study.toml") + " --compensation " + path("former") + " -o " + path("second"));
+  run("fit " + path("second/campaign.toml") + " --model " + path("model.toml") + " --noise white -o " +
+      path("result-2"));
+  for (const std::string format : {"neutral-csv", "linuxcnc-grid"}) {
+    run("tables " + path("result-2") + " --format " + format + " --superimpose " + path("former") + " -o " +
+        path(format));
+    run("simulate " + path("study.toml") + " --compensation " + path(format) + " -o " + path("third"));
+    const std::string tables = "--tables " + path(format);
+    const auto by_second = validated("result-2", "third/campaign.toml", tables);
+    const auto by_first = validated("result", "third/campaign.toml", tables);
+    EXPECT_EQ(codes_of(by_second).count("compensation.active-in-tables"), 0U) << format;
+    EXPECT_LT(by_second.at("reduced_chi2").get<double>(), 1.3) << format;
+    EXPECT_LT(by_first.at("reduced_chi2").get<double>(), 1.3) << format;
+    EXPECT_LT(by_second.at("rms_before_um").get<double>(), 0.98 * by_first.at("rms_before_um").get<double>())
+        << "the machine with the former tables errs by less";
+    std::filesystem::remove_all(path(format) + "/superimposed_on");
+    const auto unknown = validated("result-2", "third/campaign.toml", tables);
+    EXPECT_EQ(codes_of(unknown).count("compensation.active-in-tables"), 1U) << format;
+    EXPECT_GT(unknown.at("reduced_chi2").get<double>(), 2.0) << format;
+  }
+}
+
+/// Tables that say that they are superimposed on none stand beside what was active.
+TEST_F(CompensatedCampaign, TablesBesideACompensationAreNotDoubtful) {
+  measure_with_tables("control", "second");
+  run("fit " + path("second/campaign.toml") + " --model " + path("model.toml") + " --noise white -o " +
+      path("result-2"));
+  run("tables " + path("result-2") + " --format neutral-csv -o " + path("beside"));
+  EXPECT_THAT(content(path("beside/metadata.csv")), HasSubstr("superimposed_on,none\n"));
+  const auto judged = validated("result-2", "second/campaign.toml", "--tables " + path("beside"));
+  EXPECT_EQ(codes_of(judged).count("compensation.active-in-tables"), 0U);
+}
+
 /// Whether tables stand in place of those that were active or beside them, words alone do not tell.
 TEST_F(CompensatedCampaign, OfErrorsIdentifiedWithTablesIsDoubtfulWithSuperimposedOnes) {
   measure_with_tables("tables", "second");

@@ -10,10 +10,10 @@
 #include "volcal/identify/cli/options/alignment_options.h"
 #include "volcal/identify/cli/options/axis_position.h"
 #include "volcal/identify/cli/options/certificate_options.h"
-#include "volcal/identify/cli/options/compensated_readings.h"
 #include "volcal/identify/cli/options/conditions_options.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/picture.h"
+#include "volcal/identify/cli/options/superimposed_tables.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/errors/error_tables.h"
@@ -220,6 +220,8 @@ void write_files(const FitResult& result, const MadeTables& made, const TablesAr
                  const std::optional<CertificateSources>& sources) {
   AtomicFolder folder(arguments.output);
   for (const TableFile& file : made.files) folder.write(file);
+  if (!arguments.superimpose.empty())
+    keep_former_tables(arguments.superimpose, result.active_compensations, folder);
   if (sources) {
     const MeasurementRecord record = stated_record(*sources, made);
     write_certificate(arguments.certificate, {result, made, record, sources->before, sources->after},

@@ -12,10 +12,8 @@
 #include "volcal/identify/cli/options/compensated_readings.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/provenance.h"
-#include "volcal/identify/errors/alignment.h"
 #include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
-#include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/io/results/residual_writer.h"
 #include "volcal/identify/report/report.h"
@@ -73,15 +71,21 @@ void write_validation(const ValidateArguments& arguments, const Campaign& campai
   folder.commit();
 }
 
+struct Verified {
+  MeasuredError measured;
+  bool replaces_tables = false;  ///< that were active while the errors were identified
+};
+
 /// With tables that were active: the readings become what they are without; what the machine showed with
 /// them.
-std::optional<MeasuredError> verify(const ValidateArguments& arguments, const FitResult& result,
-                                    Campaign& campaign) {
+std::optional<Verified> verify(const ValidateArguments& arguments, const FitResult& result,
+                               Campaign& campaign) {
   if (arguments.tables.empty()) {
     std::ranges::move(differing_compensations(campaign, result), std::back_inserter(campaign.notes));
     return {};
   }
-  if (names_compensations(result.active_compensations))
+  const ActiveTables active = active_tables_for(arguments.tables, result.active_compensations);
+  if (active.is_doubtful)
     campaign.notes.push_back(
         {FindingCode::CompensationsInTables, {{"identified", result.active_compensations}}});
   if (!names_compensations(campaign.active_compensations)) {
@@ -89,22 +93,24 @@ std::optional<MeasuredError> verify(const ValidateArguments& arguments, const Fi
     if (!campaign.active_compensations.empty()) unstated.data["stated"] = campaign.active_compensations;
     campaign.notes.push_back(std::move(unstated));
   }
-  MeasuredError measured = measured_error(campaign, arguments.threads);
-  campaign = without_corrections(std::move(campaign), active_tables(arguments.tables), arguments.threads);
-  return measured;
+  Verified verified{measured_error(campaign, arguments.threads), active.former.has_value()};
+  campaign = without_corrections(std::move(campaign), active, arguments.threads);
+  return verified;
 }
 
-std::string compensated_text(const MeasuredError& measured) {
+std::string compensated_text(const Verified& verified) {
   std::string text = "Measured with the tables active, off the machine without errors\n";
   const auto add = [&](const ResidualSize& size, const char* what, const char* unit) {
     if (size.count > 0)
       text += fmt::format("  {} {}: RMS {:.3f}, largest {:.3f} {}\n", size.count, what, size.rms * kPerMicro,
                           size.max * kPerMicro, unit);
   };
-  add(measured.lengths, "lengths and vectors", "um");
-  add(measured.angles, "angles", "urad");
-  return text +
-         "Below: the same readings less what the tables corrected, so that the model predicts them\n\n";
+  add(verified.measured.lengths, "lengths and vectors", "um");
+  add(verified.measured.angles, "angles", "urad");
+  return text + fmt::format(
+                    "Below: the same readings less what the tables corrected{}, so that the model predicts "
+                    "them\n\n",
+                    verified.replaces_tables ? " beyond those that they are superimposed on" : "");
 }
 
 int run_validate(const ValidateArguments& arguments) {
@@ -113,13 +119,8 @@ int run_validate(const ValidateArguments& arguments) {
   const FitResult result = read_known_errors(arguments.result);
   Campaign campaign = read_campaign(arguments.campaign);
   const FittedReadings fitted = fitted_readings(campaign, result);
-  adopt_alignment(campaign, result);
-  const std::string difference = machine_difference(result.machine, campaign.machine);
-  if (!difference.empty()) {
-    throw InputError({arguments.campaign, 0}, "its machine is not the one that was identified: " + difference,
-                     "validate on a campaign of the same machine");
-  }
-  const std::optional<MeasuredError> compensated = verify(arguments, result, campaign);
+  if (auto aligned = readings_for(campaign, result, {arguments.campaign, 0})) campaign = std::move(*aligned);
+  const std::optional<Verified> compensated = verify(arguments, result, campaign);
   for (Finding& missing : missing_rotary_errors(campaign, result.identified)) {
     missing.data["in_uncertainty"] = true;
     campaign.notes.push_back(std::move(missing));
@@ -132,8 +133,8 @@ int run_validate(const ValidateArguments& arguments) {
   std::ranges::copy(validation.contradicted, std::back_inserter(campaign.notes));
   auto figures = validation_json(validation.figures, fitted);
   if (compensated) {
-    figures["compensated_rms_um"] = compensated->lengths.rms * kPerMicro;
-    figures["compensated_max_um"] = compensated->lengths.max * kPerMicro;
+    figures["compensated_rms_um"] = compensated->measured.lengths.rms * kPerMicro;
+    figures["compensated_max_um"] = compensated->measured.lengths.max * kPerMicro;
   }
   add_notes(campaign.notes, figures);
   const std::string json = json_text(figures, 2) + '\n';

@@ -2,7 +2,6 @@
 
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/model/observation/measurement_model.h"
-#include "volcal/studies/files/control_tables.h"
 
 namespace volcal::cli {
 namespace {
@@ -30,12 +29,7 @@ Eigen::VectorXd as_disturbance(const Correction& correction, const Structure& st
 
 }  // namespace
 
-CompensationTables active_tables(const std::string& folder) {
-  const TablesFolder active = read_tables_folder(folder);
-  return active.format->read(active.files);
-}
-
-Campaign without_corrections(Campaign campaign, const CompensationTables& tables, int threads) {
+Campaign without_corrections(Campaign campaign, const ActiveTables& tables, int threads) {
   const Campaign measured = campaign;
   const MeasurementModel model(measured, frozen_model(nominal_model()));
   const Eigen::VectorXd parameters = evaluate_model(measured, nominal_model(), nullptr, threads).parameters;

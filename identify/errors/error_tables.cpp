@@ -12,6 +12,7 @@
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
@@ -168,6 +169,34 @@ class TableRows {
     return row;
   }
 
+  /// Of a squareness or another location error: its parameter, where it has one, and the share of effects.
+  Eigen::VectorXd derivatives(LocationSymbol symbol) const {
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(result_.layout.size);
+    for (const ParameterBlock& block : result_.layout.blocks) {
+      if (block.location == symbol) row[block.offset] = 1.0;
+    }
+    if (compromise_.empty()) return row;
+    const Eigen::RowVectorXd share = compromise_.squareness(symbol);
+    const std::vector<int> parameters = compromise_.parameters();
+    for (std::size_t c = 0; c < parameters.size(); ++c)
+      row[parameters[c]] += share[static_cast<Eigen::Index>(c)];
+    return row;
+  }
+
+  /// Those with a parameter, in the order of the layout, then those that are a share of effects alone.
+  std::vector<LocationSymbol> locations() const {
+    std::vector<LocationSymbol> symbols;
+    for (const ParameterBlock& block : result_.layout.blocks) {
+      if (block.location) symbols.push_back(*block.location);
+    }
+    if (compromise_.empty()) return symbols;
+    for (const LocationSymbol symbol : squareness_errors(result_.machine)) {
+      const bool is_known = std::ranges::find(symbols, symbol) != symbols.end();
+      if (!is_known && !compromise_.squareness(symbol).isZero(0.0)) symbols.push_back(symbol);
+    }
+    return symbols;
+  }
+
   /// What a value has beside its derivatives times the parameters: a known expansion, and the parameters of
   /// shapes, in which it is not linear.
   double constant(ErrorSymbol symbol, double q, const Eigen::VectorXd& derivatives) const {
@@ -287,13 +316,13 @@ void for_each_table_row(const FitResult& result, const ErrorTableOptions& option
       }
     }
   }
-  for (const ParameterBlock& block : result.layout.blocks) {
-    if (!block.location) continue;
+  for (const LocationSymbol symbol : rows.locations()) {
+    const Eigen::VectorXd derivatives = rows.derivatives(symbol);
     ErrorTableRow place;
-    place.symbol = *block.location;
-    place.rotation = is_rotation(block.location->component);
-    place.value = result.parameters[block.offset];
-    visit(place, Eigen::VectorXd(Eigen::VectorXd::Unit(result.layout.size, block.offset)), 0.0);
+    place.symbol = symbol;
+    place.rotation = is_rotation(symbol.component);
+    place.value = derivatives.dot(result.parameters);
+    visit(place, derivatives, 0.0);
   }
 }
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <tuple>
+
+#include "volcal/model/description/unknowns.h"
 
 namespace volcal {
 namespace {
@@ -26,6 +29,11 @@ std::vector<double> both_signs(const std::array<double, 6>& numbers, double offs
     all.push_back(offset + plus * number);
   }
   return all;
+}
+
+/// Where a squareness error moves its axis, m per m and rad (docs/notation.md, Datum).
+Vector3d squareness_direction(LocationSymbol symbol) {
+  return Vector3d::Unit(direction_of(symbol.component)).cross(Vector3d::Unit(direction_of(symbol.axis)));
 }
 
 }  // namespace
@@ -72,6 +80,8 @@ class RigidCompromise::Sums {
         if (i == 0) mean_ += axes_[i].weight[n] * there.main;
       }
     }
+    for (std::size_t i = 0; i < axes_.size(); ++i) slopes_.push_back(mean_slope(i));
+    find_squareness(result.machine);
   }
 
   bool empty() const { return effects_.empty(); }
@@ -99,6 +109,20 @@ class RigidCompromise::Sums {
     return moved;
   }
 
+  /// Error motions with the slopes of their straightness, 6 x amplitudes.
+  PoseErrorRows sloping_motions(std::size_t axis, double q, int direction) {
+    PoseErrorRows rows = PoseErrorRows::Zero(6, amplitudes());
+    const Columns3 rotation = rotation_from_home(axis, q, direction);
+    rows.topRows<3>() = main_with_rotations_at_home(axis, q, direction) -
+                        main_with_rotations_at_home(axis, axes_[axis].home, 0);
+    rows.bottomRows<3>() = rotation;
+    const Vector3d to_point = arm(axis, q);
+    for (Eigen::Index c = 0; c < rows.cols(); ++c)
+      rows.col(c).head<3>() -= Vector3d(rotation.col(c)).cross(to_point);
+    return rows;
+  }
+  const std::map<LocationSymbol, Eigen::RowVectorXd>& squareness() const { return squareness_; }
+
   std::size_t place_of(AxisName name) const {
     return static_cast<std::size_t>(std::ranges::find(axes_, name, &ChainAxis::name) - axes_.begin());
   }
@@ -124,7 +148,40 @@ class RigidCompromise::Sums {
   }
 
  private:
+  /// A slope that is less than this share of the motion's own size is rounding.
+  static constexpr double kNoSlope = 1e-12;
+
   Eigen::Index amplitudes() const { return static_cast<Eigen::Index>(effects_.amplitude_count()); }
+
+  /// Least squares over the travel, uniformly weighted, mean of both directions; per amplitude.
+  Columns3 mean_slope(std::size_t axis) {
+    const ChainAxis& own = axes_[axis];
+    Columns3 moment = Columns3::Zero(3, amplitudes());
+    double size = 0.0;
+    for (std::size_t n = 0; n < own.node.size(); ++n) {
+      const Columns3 shift = sloping_motions(axis, own.node[n], 0).topRows<3>();
+      moment += own.weight[n] * (own.node[n] - own.middle) * shift;
+      size = std::max(size, shift.cwiseAbs().maxCoeff());
+    }
+    const double none = kNoSlope * size * std::sqrt(own.variance);
+    for (double& entry : moment.reshaped()) {
+      if (std::abs(entry) <= none) entry = 0.0;
+    }
+    return moment / own.variance;
+  }
+
+  void find_squareness(const Machine& machine) {
+    for (const LocationSymbol symbol : squareness_errors(machine)) {
+      const std::size_t later = place_of(symbol.axis);
+      const Vector3d turned = squareness_direction(symbol);
+      Eigen::RowVectorXd angle = turned.transpose() * slopes_[later];
+      const std::size_t earlier = place_of(kLinearAxes[static_cast<std::size_t>(
+          3 - direction_of(symbol.axis) - direction_of(symbol.component))]);
+      if (earlier < axes_.size())
+        angle += turned.sum() * (axes_[later].direction.transpose() * slopes_[earlier]);
+      squareness_.emplace(symbol, angle);
+    }
+  }
 
   const AtNode& at(std::size_t axis, double q, int direction) {
     const auto [place, is_new] = known_.try_emplace({axis, direction, q});
@@ -183,6 +240,8 @@ class RigidCompromise::Sums {
   std::vector<ChainAxis> axes_;  ///< workpiece to tool
   Columns3 mean_;
   std::vector<Columns3> mean_rotation_;
+  std::vector<Columns3> slopes_;  ///< of sloping_motions(), m per m
+  std::map<LocationSymbol, Eigen::RowVectorXd> squareness_;
   std::map<std::tuple<std::size_t, int, double>, AtNode> known_;
 };
 
@@ -200,16 +259,20 @@ std::vector<int> RigidCompromise::parameters() const {
 
 PoseErrorRows RigidCompromise::motions(AxisName axis, double q, int direction) const {
   const std::size_t place = sums_->place_of(axis);
-  PoseErrorRows rows = PoseErrorRows::Zero(6, static_cast<Eigen::Index>(sums_->effects().amplitude_count()));
-  if (place == sums_->axes().size()) return rows;
-  const Columns3 rotation = sums_->rotation_from_home(place, q, direction);
-  rows.topRows<3>() = sums_->main_with_rotations_at_home(place, q, direction) -
-                      sums_->main_with_rotations_at_home(place, sums_->axes()[place].home, 0);
-  rows.bottomRows<3>() = rotation;
-  const Vector3d arm = sums_->arm(place, q);
-  for (Eigen::Index c = 0; c < rows.cols(); ++c)
-    rows.col(c).head<3>() -= Vector3d(rotation.col(c)).cross(arm);
+  if (place == sums_->axes().size())
+    return PoseErrorRows::Zero(6, static_cast<Eigen::Index>(sums_->effects().amplitude_count()));
+  PoseErrorRows rows = sums_->sloping_motions(place, q, direction);
+  const double travelled = q - sums_->axes()[place].home;
+  for (const auto& [symbol, angle] : sums_->squareness()) {
+    if (symbol.axis == axis) rows.topRows<3>() -= travelled * squareness_direction(symbol) * angle;
+  }
   return rows;
+}
+
+Eigen::RowVectorXd RigidCompromise::squareness(LocationSymbol symbol) const {
+  const auto found = sums_->squareness().find(symbol);
+  if (found != sums_->squareness().end()) return found->second;
+  return Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(sums_->effects().amplitude_count()));
 }
 
 Vector3d RigidCompromise::along(AxisName axis, double q, int direction) const {

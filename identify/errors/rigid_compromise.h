@@ -13,12 +13,19 @@
 ///
 /// Without the mean of f, zero at home as every error is (mean of both directions of approach): what E_i is
 /// at home is, of the error motions, a slope of the displacements of the axes behind.
+///
+/// With s_ki the least-squares slope over the travel of component k of axis i's displacement, s_ki + s_ik is
+/// the squareness of i and k, as in compensation.h. The error motions are stated without it: the slope s_ki of
+/// the earlier axis of the datum stays, and its opposite of the later one, which together are a rotation of
+/// the machine frame. Motions and squareness move the functional point as before, but for a constant where an
+/// axis is not at 0 at home.
 
 #include <Eigen/Core>
 #include <memory>
 #include <vector>
 
 #include "volcal/identify/errors/error_field.h"
+#include "volcal/model/description/symbols.h"
 
 namespace volcal {
 
@@ -30,8 +37,11 @@ class RigidCompromise {
   bool empty() const;
   /// Parameters of the effects' amplitudes.
   std::vector<int> parameters() const;
-  /// Error motions EX EY EZ (m) EA EB EC (rad) of a linear axis per unit of every amplitude: 6 x parameters.
+  /// Error motions EX EY EZ (m) EA EB EC (rad) of a linear axis without squareness(), per unit of every
+  /// amplitude: 6 x parameters.
   PoseErrorRows motions(AxisName axis, double q, int direction) const;
+  /// Of squareness_errors(), rad per unit of every amplitude; zeros for other location errors.
+  Eigen::RowVectorXd squareness(LocationSymbol symbol) const;
   /// D_i of the result less its value at home, m.
   Eigen::Vector3d along(AxisName axis, double q, int direction) const;
   /// All of it at a position, zero at home, m.

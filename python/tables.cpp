@@ -157,8 +157,8 @@ void define_tables(py::module_& module) {
             if (!made.all_axes) return py::none();
             return from_json(json_text(all_axes_json(*made.all_axes), -1));
           },
-          "Errors of all axes before and with the tables, over poses of all axes, um; None for a machine "
-          "without rotary axes.")
+          "Errors of all axes before and with the tables, over poses of all axes, um, and of the tool's "
+          "axis, urad; None for a machine without rotary axes.")
       .def("write", &write_tables_folder, py::arg("path"),
            "Writes the files into a folder. Raises InputError.")
       .def("__repr__", [](const MadeTables& made) {

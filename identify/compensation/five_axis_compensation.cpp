@@ -243,7 +243,12 @@ FiveAxisCompensation::Left FiveAxisCompensation::left_by(const Correction& corre
   const Levers at = levers_at(position);
   const KinematicChain::Pose<double> pose = exact_pose(position, correction, direction);
   const Vector3d axis_w = pose.rotation_wt.col(2);
-  return {pose.point_w - at.point_w, std::atan2(axis_w.cross(at.axis_w).norm(), axis_w.dot(at.axis_w))};
+  return {pose.point_w - at.point_w, std::atan2(axis_w.cross(at.axis_w).norm(), axis_w.dot(at.axis_w)),
+          axis_w};
+}
+
+Vector3d FiveAxisCompensation::nominal_axis_w(const AxisPosition& position) const {
+  return levers_at(position).axis_w;
 }
 
 /// In one of several poses two rotary axes must turn the tool's axis in two directions.

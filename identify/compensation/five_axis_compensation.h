@@ -67,10 +67,13 @@ class FiveAxisCompensation {
   struct Left {
     Eigen::Vector3d displacement_w = Eigen::Vector3d::Zero();
     double axis = 0.0;
+    Eigen::Vector3d axis_w = Eigen::Vector3d::UnitZ();  ///< direction of the tool's axis
   };
   Eigen::Vector3d nominal_point_w(const AxisPosition& position) const {
     return chain_.nominal_point_w(position, settings_.tool_offset);
   }
+  /// Direction of the tool's axis without errors.
+  Eigen::Vector3d nominal_axis_w(const AxisPosition& position) const;
   Left left_by(const Correction& correction, const AxisPosition& position,
                const ApproachDirection& direction = {}) const;
 

@@ -1,6 +1,7 @@
 #include "volcal/identify/compensation/checks/all_axes_check.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "volcal/identify/compensation/five_axis_compensation.h"
@@ -11,16 +12,41 @@
 namespace volcal {
 namespace {
 
-template <class CorrectionAt>
-ErrorLeft left_of(const FiveAxisCompensation& machine, const std::vector<ApproachedPose>& poses,
-                  const CorrectionAt& correction_at) {
-  std::vector<Eigen::Vector3d> places, errors;
-  for (const auto& [position, direction] : poses) {
-    places.push_back(machine.nominal_point_w(position));
-    errors.push_back(machine.left_by(correction_at(position, direction), position, direction).displacement_w);
+/// Directions of the tool's axis, as they should be and as they are.
+struct AxisAtPose {
+  Eigen::Vector3d nominal_w, actual_w;
+};
+
+/// A workpiece that turns by `rotation` takes the direction along that the tool should have.
+void add_axis_figures(const std::vector<AxisAtPose>& axes, const Eigen::Vector3d& rotation,
+                      PoseErrorLeft& left) {
+  double squares = 0.0;
+  for (const AxisAtPose& axis : axes) {
+    const Eigen::Vector3d turned_w = axis.nominal_w + rotation.cross(axis.nominal_w);
+    const double angle = std::atan2(axis.actual_w.cross(turned_w).norm(), axis.actual_w.dot(turned_w));
+    squares += angle * angle;
+    left.axis_max = std::max(left.axis_max, angle);
   }
-  const VolumetricFigures figures = volumetric_figures(without_rigid_motion(places, errors));
-  return {figures.rms, figures.max};
+  left.axis_rms = std::sqrt(squares / static_cast<double>(axes.size()));
+}
+
+template <class CorrectionAt>
+PoseErrorLeft left_of(const FiveAxisCompensation& machine, const std::vector<ApproachedPose>& poses,
+                      const CorrectionAt& correction_at) {
+  std::vector<Eigen::Vector3d> places, errors;
+  std::vector<AxisAtPose> axes;
+  for (const auto& [position, direction] : poses) {
+    const auto left = machine.left_by(correction_at(position, direction), position, direction);
+    places.push_back(machine.nominal_point_w(position));
+    errors.push_back(left.displacement_w);
+    axes.push_back({machine.nominal_axis_w(position), left.axis_w});
+  }
+  const RigidMotion motion = best_rigid_motion(places, errors);
+  for (std::size_t i = 0; i < places.size(); ++i) errors[i] -= motion.at(places[i]);
+  const VolumetricFigures figures = volumetric_figures(errors);
+  PoseErrorLeft left{{figures.rms, figures.max}};
+  add_axis_figures(axes, motion.rotation, left);
+  return left;
 }
 
 }  // namespace

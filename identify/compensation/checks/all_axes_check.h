@@ -11,11 +11,18 @@ namespace volcal {
 
 inline constexpr int kAllAxesPoses = 400;
 
+/// Of the functional point and of the direction of the tool's axis, two components, rad (ISO/TR 16907:2015,
+/// 8.2.6): both after the rigid motion of the workpiece that is best for the functional points.
+struct PoseErrorLeft : ErrorLeft {
+  double axis_rms = 0.0;
+  double axis_max = 0.0;
+};
+
 struct AllAxesCheck {
-  ErrorLeft before, exported;
+  PoseErrorLeft before, exported;
   /// What L-VOL made with the rotary axes at 0, without any table's step, leaves of the errors of linear axes
   /// alone: where a head is tilted, their angles act by another lever.
-  ErrorLeft levers;
+  PoseErrorLeft levers;
 };
 
 /// By the exact model with the errors as identified, approached from either side as often, after the best

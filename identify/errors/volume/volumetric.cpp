@@ -40,6 +40,23 @@ VolumetricFigures volumetric_figures(std::span<const Eigen::Vector3d> errors) {
   return figures;
 }
 
+RigidMotion best_rigid_motion(std::span<const Eigen::Vector3d> points,
+                              std::span<const Eigen::Vector3d> errors) {
+  if (points.size() != errors.size()) throw std::invalid_argument("as many points as errors are needed");
+  if (points.empty()) return {};
+  RigidMotion motion{mean_of(points), mean_of(errors)};
+  const auto rows = static_cast<Eigen::Index>(3 * points.size());
+  Eigen::MatrixXd turn(rows, 3);
+  Eigen::VectorXd rest(rows);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(3 * i);
+    turn.middleRows<3>(row) = -cross_matrix(points[i] - motion.centre);  // w x arm = -arm x w
+    rest.segment<3>(row) = errors[i] - motion.translation;
+  }
+  motion.rotation = least_squares(turn, rest).solution;
+  return motion;
+}
+
 std::vector<Eigen::Vector3d> without_rigid_motion(std::span<const Eigen::Vector3d> points,
                                                   std::span<const Eigen::Vector3d> errors) {
   return without_rigid_motion(points, errors, points.size());
@@ -50,21 +67,9 @@ std::vector<Eigen::Vector3d> without_rigid_motion(std::span<const Eigen::Vector3
                                                   std::size_t fitted) {
   if (points.size() != errors.size()) throw std::invalid_argument("as many points as errors are needed");
   if (fitted > points.size()) throw std::invalid_argument("more points to fit than there are");
-  if (points.empty()) return {};
-  const Eigen::Vector3d centre = mean_of(points.first(fitted)), shift = mean_of(errors.first(fitted));
-  const auto rows = static_cast<Eigen::Index>(3 * points.size());
-  const auto fitted_rows = static_cast<Eigen::Index>(3 * fitted);
-  Eigen::MatrixXd turn(rows, 3);
-  Eigen::VectorXd rest(rows);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(3 * i);
-    turn.middleRows<3>(row) = -cross_matrix(points[i] - centre);  // w x arm = -arm x w
-    rest.segment<3>(row) = errors[i] - shift;
-  }
-  const Eigen::Vector3d rotation = least_squares(turn.topRows(fitted_rows), rest.head(fitted_rows)).solution;
-  rest -= turn * rotation;
+  const RigidMotion motion = best_rigid_motion(points.first(fitted), errors.first(fitted));
   std::vector<Eigen::Vector3d> result;
-  for (Eigen::Index row = 0; row < rows; row += 3) result.emplace_back(rest.segment<3>(row));
+  for (std::size_t i = 0; i < points.size(); ++i) result.emplace_back(errors[i] - motion.at(points[i]));
   return result;
 }
 

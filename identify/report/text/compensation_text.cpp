@@ -122,21 +122,39 @@ std::string rotary_check_text(const RotaryCheck& check, const CompensationType& 
   return table.text();
 }
 
+namespace {
+
+std::vector<std::string> pose_figures(const std::string& name, const PoseErrorLeft& left) {
+  std::vector<std::string> row = left_figures(name, left);
+  row.push_back(fixed_number(left.axis_rms / kMicro, 2));
+  row.push_back(fixed_number(left.axis_max / kMicro, 2));
+  return row;
+}
+
+nlohmann::ordered_json pose_json(const PoseErrorLeft& left) {
+  nlohmann::ordered_json json = left_json(left);
+  json["tool_axis_urad"] = left.axis_rms / kMicro;
+  json["tool_axis_max_urad"] = left.axis_max / kMicro;
+  return json;
+}
+
+}  // namespace
+
 std::string all_axes_text(const AllAxesCheck& check) {
   TextTable table(
-      {{"", Align::Left}, {"RMS [um]"}, {"max [um]"}},
+      {{"", Align::Left}, {"RMS [um]"}, {"max [um]"}, {"tool axis RMS [urad]"}, {"max [urad]"}},
       fmt::format(
           "Errors of all axes left at {} poses of all axes, without the best rigid motion of the workpiece",
           kAllAxesPoses));
-  table.add_row(left_figures("before", check.before));
-  table.add_row(left_figures("tables read back", check.exported));
+  table.add_row(pose_figures("before", check.before));
+  table.add_row(pose_figures("tables read back", check.exported));
   return table.text();
 }
 
 nlohmann::ordered_json all_axes_json(const AllAxesCheck& check) {
-  return {{"before", left_json(check.before)},
-          {"tables", left_json(check.exported)},
-          {"levers_of_tilted_head", left_json(check.levers)}};
+  return {{"before", pose_json(check.before)},
+          {"tables", pose_json(check.exported)},
+          {"levers_of_tilted_head", pose_json(check.levers)}};
 }
 
 nlohmann::ordered_json rotary_check_json(const RotaryCheck& check) {

@@ -63,6 +63,80 @@ TEST(TablesOfAHead, LeaveTheLeverOfItsTilt) {
   EXPECT_TRUE(is_said(made, FindingCode::LeversOfTiltedHead));
 }
 
+/// Rotation of the best rigid motion by its six unknowns at once, rad.
+Eigen::Vector3d rotation_of(const std::vector<Eigen::Vector3d>& places,
+                            const std::vector<Eigen::Vector3d>& errors) {
+  Eigen::MatrixXd rows(3 * places.size(), 6);
+  Eigen::VectorXd values(3 * places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(3 * i);
+    rows.block<3, 3>(row, 0).setIdentity();
+    for (int k = 0; k < 3; ++k)
+      rows.block<3, 1>(row, 3 + k) = Eigen::Vector3d(Eigen::Vector3d::Unit(k).cross(places[i]));
+    values.segment<3>(row) = errors[i];
+  }
+  return rows.colPivHouseholderQr().solve(values).tail<3>();
+}
+
+/// The roll turns the tool's axis R(A) e_z about x, across it: by EAX whatever A is. Tables of linear axes
+/// leave all of that but what the rigid motion w that is best for the points turns: (EAX e_x - w) x R(A) e_z.
+TEST(TablesOfAHead, LeaveTheDirectionOfTheToolsAxis) {
+  const Machine machine = testing::rotary_machine("w b X Y Z A t");
+  const auto roll = [](double q) { return 40e-6 * q / 0.6; };
+  const FitResult result = testing::result_with(machine, {.functions = {{"EAX", roll}}}, 6);
+  const MadeTables made = tables_of(result, "neutral-csv", CompensationType::volumetric());
+  const Eigen::Vector3d tool = machine.tools.front().offset, centre = machine.axis(AxisName::A).centre;
+  std::vector<Eigen::Vector3d> places, errors, axes, turns;
+  for (const AxisPosition& pose : poses_of_all_axes(machine, kAllAxesPoses)) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(pose[index_of(AxisName::A)], Eigen::Vector3d::UnitX()).toRotationMatrix();
+    const Eigen::Vector3d tip = centre + turn * (tool - centre);
+    const Eigen::Vector3d moved = tip - tool;
+    places.push_back(Eigen::Vector3d(pose[0], pose[1], pose[2]) + tip);
+    errors.push_back(roll(pose[0]) * Eigen::Vector3d(0.0, -moved.z(), moved.y()));
+    axes.push_back(turn.col(2));
+    turns.push_back(roll(pose[0]) * Eigen::Vector3d::UnitX());
+  }
+  const Eigen::Vector3d frame = rotation_of(places, errors);
+  double squares = 0.0, largest = 0.0;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const double left = (turns[i] - frame).cross(axes[i]).norm();
+    squares += left * left / static_cast<double>(axes.size());
+    largest = std::max(largest, left);
+  }
+  ASSERT_TRUE(made.all_axes.has_value());
+  EXPECT_GT(frame.norm(), 0.5e-6) << "the frame counts";
+  EXPECT_NEAR(made.all_axes->levers.axis_rms, std::sqrt(squares), 2e-3 * std::sqrt(squares));
+  EXPECT_NEAR(made.all_axes->levers.axis_max, largest, 2e-3 * largest);
+  EXPECT_NEAR(made.all_axes->exported.axis_rms, std::sqrt(squares), 0.02 * std::sqrt(squares));
+}
+
+/// EA0Z leans Z, (0, -z, 0) EA0Z, and turns neither tool nor workpiece: of the direction of the tool's axis
+/// nothing is wrong but in the frame that is best for the points.
+TEST(TablesOfAHead, LeaveADirectionThatIsRightWhereAnAxisLeans) {
+  const Machine machine = testing::rotary_machine("w b X Y Z A t");
+  const FitResult result = testing::result_with(machine, {.locations = {{"EA0Z", 50e-6}}}, 6);
+  const MadeTables made = tables_of(result, "neutral-csv", CompensationType::volumetric());
+  const Eigen::Vector3d tool = machine.tools.front().offset, centre = machine.axis(AxisName::A).centre;
+  std::vector<Eigen::Vector3d> places, errors, axes;
+  for (const AxisPosition& pose : poses_of_all_axes(machine, kAllAxesPoses)) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(pose[index_of(AxisName::A)], Eigen::Vector3d::UnitX()).toRotationMatrix();
+    places.push_back(Eigen::Vector3d(pose[0], pose[1], pose[2]) + centre + turn * (tool - centre));
+    errors.push_back(-50e-6 * pose[2] * Eigen::Vector3d::UnitY());
+    axes.push_back(turn.col(2));
+  }
+  const Eigen::Vector3d frame = rotation_of(places, errors);
+  double squares = 0.0;
+  for (const Eigen::Vector3d& axis : axes)
+    squares += frame.cross(axis).squaredNorm() / static_cast<double>(axes.size());
+  ASSERT_TRUE(made.all_axes.has_value());
+  EXPECT_GT(frame.norm(), 5e-6);
+  EXPECT_NEAR(made.all_axes->before.axis_rms, std::sqrt(squares), 2e-3 * std::sqrt(squares));
+  EXPECT_LT(made.all_axes->exported.rms, 0.05e-6);
+  EXPECT_LT(made.all_axes->exported.axis_rms, 0.1e-6);
+}
+
 /// Tables that were active are in what was identified, and are taken away with it: the lever is that of the
 /// roll.
 TEST(TablesOfAHead, LeaveTheSameLeverInPlaceOfOthers) {

@@ -14,6 +14,13 @@ Json left_row(const std::string& name, const ErrorLeft& left) {
   return {{"name", name}, {"rms", rounded_micrometres(left.rms)}, {"max", rounded_micrometres(left.max)}};
 }
 
+Json pose_left_row(const std::string& name, const PoseErrorLeft& left) {
+  Json row = left_row(name, left);
+  row["axis"] = rounded(left.axis_rms * kPerMicro, 4);
+  row["axis_max"] = rounded(left.axis_max * kPerMicro, 4);
+  return row;
+}
+
 Json volume_left_rows(const MadeTables& tables) {
   const VolumeCheck& check = tables.check;
   Json rows = Json::array();
@@ -27,8 +34,8 @@ Json volume_left_rows(const MadeTables& tables) {
   if (check.over_conditions)
     rows.push_back(left_row("tables, ends of the campaign's conditions", *check.over_conditions));
   if (tables.all_axes) {
-    rows.push_back(left_row("before, poses of all axes", tables.all_axes->before));
-    rows.push_back(left_row("tables, poses of all axes", tables.all_axes->exported));
+    rows.push_back(pose_left_row("before, poses of all axes", tables.all_axes->before));
+    rows.push_back(pose_left_row("tables, poses of all axes", tables.all_axes->exported));
   }
   return rows;
 }

@@ -41,6 +41,11 @@ const leftColumns = [
   { name: 'Largest', unit: 'µm', cell: (row) => micrometres(row.max) },
 ];
 
+const axisColumns = [
+  { name: 'Tool axis', unit: 'µrad RMS', cell: (row) => (row.axis === undefined ? '' : fixed(row.axis, 2)) },
+  { name: 'Largest', unit: 'µrad', cell: (row) => (row.axis_max === undefined ? '' : fixed(row.axis_max, 2)) },
+];
+
 function measuredRows(rows) {
   return rows.flatMap((row) => [['lengths', 'µm'], ['angles', 'µrad']]
     .filter(([kind]) => row[kind])
@@ -79,9 +84,9 @@ function errorTables(errors) {
 export function renderCertificateFigures(body, data) {
   body.append(
     el('h3', {}, 'In the volume, computed'),
-    table(leftColumns, data.volume),
+    table(data.poses > 0 ? [...leftColumns, ...axisColumns] : leftColumns, data.volume),
     note(`Position of the functional point, actual minus nominal without its best rigid motion, at ${data.places} places of the volume, each approached from both sides of every axis`,
-      data.poses > 0 ? `; with all axes at ${data.poses} poses over their travel.` : '.'),
+      data.poses > 0 ? `; with all axes at ${data.poses} poses over their travel, there with the direction of the tool's axis after the same rigid motion.` : '.'),
   );
   if (data.parts.length > 0) {
     body.append(el('h3', {}, 'By type of compensation'), table([

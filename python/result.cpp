@@ -67,7 +67,9 @@ py::list parameter_list(const Result& result, const Value& value) {
 }
 
 py::array_t<double> standard_uncertainties(const Result& result) {
-  return array_of(Eigen::VectorXd(result.result.covariance.diagonal().cwiseMax(0.0).cwiseSqrt()));
+  Eigen::VectorXd u(result.result.parameters.size());
+  for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = std::sqrt(parameter_variance(result.result, i));
+  return array_of(u);
 }
 
 /// Of an aligned result that was read from files nothing is written of readings, which stay in the former
@@ -254,7 +256,7 @@ void define_numbers(py::class_<Result>& type) {
             return read_only_view(self.cast<const Result&>().result.covariance, self);
           },
           "Covariance of the parameters: float array of shape (p, p), SI, read-only, no copy; singular by "
-          "the datum.")
+          "the datum; of shape (0, 0) where errors are stated.")
       .def_property_readonly("u", &standard_uncertainties,
                              "Standard uncertainties of the parameters: float array of shape (p,), SI.")
       .def_property_readonly(

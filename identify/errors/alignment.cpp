@@ -19,8 +19,10 @@
 namespace volcal {
 namespace {
 
-using Functional = Eigen::RowVectorXd;                        ///< of (parameters, 1)
-using VectorRows = Eigen::Matrix<double, 3, Eigen::Dynamic>;  ///< a vector as function of (parameters, 1)
+/// A function of (parameters, 1) by its derivatives, or, of errors that are stated, by its value alone: what
+/// has no covariance needs no Jacobian, whose size goes with the square of the parameters' number.
+using Functional = Eigen::RowVectorXd;
+using VectorRows = Eigen::Matrix<double, 3, Eigen::Dynamic>;  ///< of a vector, so
 
 constexpr double kHolds = 1e-9;  // largest misfit of 1, or of a slope over the travel, in a basis
 constexpr double kHeld = 1e-7;   // share of a displacement that locations and frames may leave
@@ -45,11 +47,11 @@ Eigen::VectorXd straight_line(const Basis& basis, ErrorSymbol symbol, double val
                               double from) {
   const BasisMoments moment = moments(basis);
   const Eigen::VectorXd right = (value - slope * from) * moment.zeroth + slope * moment.first;
-  Eigen::VectorXd coefficients = least_squares(gram(basis, 0), right).solution;
+  Eigen::VectorXd coefficients = coefficients_with_integrals(basis, right);
   const std::vector<double> ends = basis.pieces();
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     for (const double q : {ends[i], 0.5 * (ends[i] + ends[i + 1]), ends[i + 1]}) {
-      if (std::abs(basis.row(q).dot(coefficients) - value - slope * (q - from)) > kHolds)
+      if (!(std::abs(basis.value(q, coefficients) - value - slope * (q - from)) <= kHolds))
         throw InputError({}, "the basis of " + symbol.name() + " does not hold a constant and a slope",
                          "fit with a B-spline or a Legendre basis for it");
     }
@@ -85,17 +87,17 @@ class Realignment {
   AlignedResult aligned() {
     AlignedResult aligned{old_};
     FitResult& result = aligned.result;
-    Eigen::MatrixXd jacobian = parameter_rows(result.layout);
-    if (has_rotary_errors(old_)) carry_rotary_axes(result.layout, jacobian);
-    const Eigen::Index size = old_.parameters.size();
-    result.parameters = jacobian * extended();
-    const Eigen::MatrixXd inner = jacobian.leftCols(size);
-    const bool is_stated = old_.covariance.size() == 0;
-    if (!is_stated) result.covariance = inner * old_.covariance * inner.transpose();
+    Eigen::MatrixXd rows = parameter_rows(result.layout);
+    if (has_rotary_errors(old_)) carry_rotary_axes(result.layout, rows);
+    result.parameters = rows * extended();
     aligned.frame_rotation = phi_ * extended();
     aligned.frame_covariance.setZero(phi_.rows(), phi_.rows());
-    if (!is_stated)
+    if (!is_stated()) {
+      const Eigen::Index size = old_.parameters.size();
+      const Eigen::MatrixXd jacobian = rows.leftCols(size);
+      result.covariance = jacobian * old_.covariance * jacobian.transpose();
       aligned.frame_covariance = phi_.leftCols(size) * old_.covariance * phi_.leftCols(size).transpose();
+    }
     turn_tools();
     result.machine = machine_;
     result.adjustment = nullptr;
@@ -107,12 +109,17 @@ class Realignment {
 
  private:
   Axis& axis_of(AxisName name) { return *std::ranges::find(machine_.axes, name, &Axis::name); }
-  Eigen::Index columns() const { return old_.parameters.size() + 1; }
+  bool is_stated() const { return old_.covariance.size() == 0; }
+  Eigen::Index columns() const { return is_stated() ? 1 : old_.parameters.size() + 1; }
+  /// Functionals times it are their values.
   Eigen::VectorXd extended() const {
-    Eigen::VectorXd values(columns());
-    values << old_.parameters, 1.0;
+    Eigen::VectorXd values = Eigen::VectorXd::Ones(columns());
+    if (!is_stated()) values.head(old_.parameters.size()) = old_.parameters;
     return values;
   }
+  /// The column that a parameter stands in, and what stands there for it.
+  Eigen::Index column_of(Eigen::Index parameter) const { return is_stated() ? 0 : parameter; }
+  double unit_of(Eigen::Index parameter) const { return is_stated() ? old_.parameters[parameter] : 1.0; }
 
   /// Puts `weights` of a function's coefficients into a functional; nothing where it is switched off.
   Functional of_coefficients(ErrorSymbol symbol, const auto& weights) const {
@@ -121,7 +128,10 @@ class Realignment {
     if (!place) return row;
     const FunctionGroup& group = old_.layout.groups[static_cast<std::size_t>(place->group)];
     const Eigen::VectorXd values = weights(*group.basis);
-    for (int j = 0; j < group.basis->size(); ++j) row[group.index(j, place->slot)] = values[j];
+    for (int j = 0; j < group.basis->size(); ++j) {
+      const int parameter = group.index(j, place->slot);
+      row[column_of(parameter)] += values[j] * unit_of(parameter);
+    }
     return row;
   }
   Functional at_origin(ErrorSymbol symbol) const {
@@ -153,8 +163,9 @@ class Realignment {
     VectorRows rows = VectorRows::Zero(3, columns());
     for (const ParameterBlock& block : old_.layout.blocks) {
       if (!block.location || block.location->axis != axis) continue;
-      rows.col(block.offset) +=
-          axis_vector(kAllAxes[static_cast<std::size_t>(direction_of(block.location->component))]).cross(e);
+      const Eigen::Vector3d about =
+          axis_vector(kAllAxes[static_cast<std::size_t>(direction_of(block.location->component))]);
+      rows.col(column_of(block.offset)) += unit_of(block.offset) * about.cross(e);
     }
     for (const Component component : {Component::X, Component::Y, Component::Z})
       rows.row(direction_of(component)) += slope({component, axis});
@@ -201,14 +212,19 @@ class Realignment {
     return turned_direction(symbol.axis).row(direction_of(symbol.component));
   }
 
+  void keep_function(const FunctionGroup& group, int slot, Eigen::MatrixXd& rows) const {
+    for (int j = 0; j < group.basis->size(); ++j) {
+      const int parameter = group.index(j, slot);
+      rows(parameter, column_of(parameter)) += unit_of(parameter);
+    }
+  }
+
   void write_function(ErrorSymbol symbol, const FunctionGroup& group, int slot, Eigen::MatrixXd& rows) const {
     const double home = machine_.axis(symbol.axis).home;
     const Eigen::VectorXd one = straight_line(*group.basis, symbol, 1.0, 0.0, home);
     const Functional constant = at_origin(symbol);
-    for (int j = 0; j < group.basis->size(); ++j) {
-      rows(group.index(j, slot), group.index(j, slot)) += 1.0;
-      rows.row(group.index(j, slot)) -= one[j] * constant;
-    }
+    keep_function(group, slot, rows);
+    for (int j = 0; j < group.basis->size(); ++j) rows.row(group.index(j, slot)) -= one[j] * constant;
     if (has_free_slope(symbol)) return;
     const Eigen::VectorXd line = straight_line(*group.basis, symbol, 0.0, 1.0, home);
     const Functional change = kept_slope(symbol) - slope(symbol);
@@ -245,8 +261,7 @@ class Realignment {
     for (const FunctionGroup& group : layout.groups) {
       for (int slot = 0; slot < group.count(); ++slot) {
         if (is_rotary(group.axis)) {
-          for (int j = 0; j < group.basis->size(); ++j)
-            rows(group.index(j, slot), group.index(j, slot)) = 1.0;
+          keep_function(group, slot, rows);
         } else {
           write_function(group.symbols[static_cast<std::size_t>(slot)], group, slot, rows);
         }
@@ -256,8 +271,9 @@ class Realignment {
     for (std::size_t i = 0; i < angles.size(); ++i) rows.row(layout.blocks[i].offset) = squareness[i];
     for (std::size_t i = angles.size(); i < layout.blocks.size(); ++i) {
       const ParameterBlock& block = layout.blocks[i];
-      rows.block(block.offset, old_.layout.find_block(block.name)->offset, block.size(), block.size())
-          .setIdentity();
+      const int former = old_.layout.find_block(block.name)->offset;
+      for (int k = 0; k < block.size(); ++k)
+        rows(block.offset + k, column_of(former + k)) = unit_of(former + k);
     }
     return rows;
   }
@@ -271,8 +287,12 @@ class Realignment {
       const PosedPoint& at = points[i];
       auto part = displacements.middleRows<3>(3 * static_cast<Eigen::Index>(i));
       part = pose_error_rows(chain_now, layout, at.position, at.offset_t, at.position).topRows<3>() * rows;
-      part.leftCols(old_.parameters.size()) -=
-          pose_error_rows(chain, old_.layout, at.position, at.offset_t, at.position).topRows<3>();
+      const auto former = pose_error_rows(chain, old_.layout, at.position, at.offset_t, at.position);
+      if (is_stated()) {
+        part.col(0) -= former.topRows<3>() * old_.parameters;
+      } else {
+        part.leftCols(old_.parameters.size()) -= former.topRows<3>();
+      }
     }
     return displacements;
   }
@@ -357,7 +377,7 @@ class Realignment {
       const auto symbol = error.symbol.location();
       if (!symbol || !is_rotary(symbol->axis)) continue;
       if (const ParameterBlock* block = result.layout.find_location(*symbol))
-        error.u_rms = std::sqrt(std::max(0.0, result.covariance(block->offset, block->offset)));
+        error.u_rms = std::sqrt(parameter_variance(result, block->offset));
     }
     Observability worst;
     worst.visible_fraction = 1.0;
@@ -370,7 +390,7 @@ class Realignment {
     for (const LocationSymbol& symbol : squareness_errors(machine_)) {
       const ParameterBlock& block = *result.layout.find_location(symbol);
       worst.symbol = symbol;
-      worst.u_rms = std::sqrt(std::max(0.0, result.covariance(block.offset, block.offset)));
+      worst.u_rms = std::sqrt(parameter_variance(result, block.offset));
       worst.effective_parameters = 1.0;
       errors.push_back(worst);
     }

@@ -33,6 +33,10 @@ std::string_view to_string(FitStatus status) {
   return "";
 }
 
+double parameter_variance(const FitResult& result, Eigen::Index parameter) {
+  return result.covariance.size() == 0 ? 0.0 : std::max(0.0, result.covariance(parameter, parameter));
+}
+
 Eigen::MatrixXd covariance_of(const FitResult& result, const std::vector<int>& parameters) {
   const auto size = static_cast<Eigen::Index>(parameters.size());
   if (result.covariance.size() == 0) return Eigen::MatrixXd::Zero(size, size);

@@ -163,6 +163,8 @@ struct FitResult {
   std::shared_ptr<const Adjustment> adjustment;  ///< adjustment.h; null in a result read from files
 };
 
+/// Of one parameter; zero where errors are stated.
+double parameter_variance(const FitResult& result, Eigen::Index parameter);
 /// Of these parameters; zero where errors are stated.
 Eigen::MatrixXd covariance_of(const FitResult& result, const std::vector<int>& parameters);
 

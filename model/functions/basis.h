@@ -48,6 +48,10 @@ struct BasisMoments {
   Eigen::VectorXd first;
 };
 BasisMoments moments(const Basis& basis);
+/// Coefficients of the function whose integrals with each B_j over the travel are `integrals`: gram(basis, 0)
+/// times them, by Cholesky's method in the band that the support leaves. Memory and time in proportion to the
+/// number of functions.
+Eigen::VectorXd coefficients_with_integrals(const Basis& basis, const Eigen::VectorXd& integrals);
 /// Gram matrix of the `order`-th derivatives, integral of B_i^(k) B_j^(k) over the travel.
 Eigen::MatrixXd gram(const Basis& basis, int order);
 

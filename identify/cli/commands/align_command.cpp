@@ -43,9 +43,8 @@ std::vector<AngleWithU> squareness_of(const FitResult& result) {
   for (const LocationSymbol symbol : result.machine.datum.squareness()) {
     const ParameterBlock* block = result.layout.find_location(symbol);
     if (block == nullptr) continue;
-    const double variance =
-        result.covariance.rows() > block->offset ? result.covariance(block->offset, block->offset) : 0.0;
-    angles.push_back({symbol.name(), result.parameters[block->offset], std::sqrt(std::max(0.0, variance))});
+    angles.push_back({symbol.name(), result.parameters[block->offset],
+                      std::sqrt(parameter_variance(result, block->offset))});
   }
   return angles;
 }

@@ -49,7 +49,7 @@ class VolumeOfParts {
         parts_(field_.contributions()),
         turned_(rotary == RotaryPoses::AtRest ? std::vector<AxisName>() : identified_rotary_axes(result)) {
     fields_.resize(parts_.size());
-    VolumeMoments moments(result.parameters.size());
+    VolumeMoments moments(is_uncertain_ ? result.parameters.size() : 0);
     for (const VolumePose& pose :
          volume_poses(result.machine, tool, field_.effects(), turned_, cells_per_axis)) {
       add(pose);

@@ -12,6 +12,7 @@ namespace {
 constexpr std::uint64_t kSeedOfExample = 1;
 
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
+  if (covariance.size() == 0) return {};
   const SymmetricEigen eigen = eigen_decomposition(covariance);
   return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
@@ -27,10 +28,11 @@ RemainingErrors::RemainingErrors(const Eigen::MatrixXd& covariance)
 
 RemainingError RemainingErrors::at(std::span<const Eigen::Vector3d> points,
                                    const Eigen::MatrixXd& derivatives) const {
-  const Eigen::MatrixXd fields = derivatives * root_;
   RemainingError remaining;
   remaining.u.assign(points.size(), Eigen::Vector3d::Zero());
   remaining.example = remaining.u;
+  if (root_.size() == 0) return remaining;
+  const Eigen::MatrixXd fields = derivatives * root_;
   std::vector<Eigen::Vector3d> field(points.size());
   for (Eigen::Index k = 0; k < fields.cols(); ++k) {
     for (std::size_t i = 0; i < field.size(); ++i) {

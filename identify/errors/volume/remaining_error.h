@@ -16,8 +16,8 @@ struct RemainingError {
 
 class RemainingErrors {
  public:
-  /// `covariance` of the parameters, positive semidefinite. The same draw of the parameters serves every set
-  /// of points.
+  /// `covariance` of the parameters, positive semidefinite; without rows where nothing is uncertain. The same
+  /// draw of the parameters serves every set of points.
   explicit RemainingErrors(const Eigen::MatrixXd& covariance);
 
   /// `derivatives` of the errors to the parameters: three rows per point.

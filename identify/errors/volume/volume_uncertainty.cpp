@@ -18,7 +18,7 @@ double volume_uncertainty(const FitResult& result, const Tool& tool, const Condi
   const bool is_uncertain = !result.covariance.isZero(0.0);
   const ErrorField field(result, tool, conditions);
   const Eigen::Vector3d movable = movable_directions(result.machine);
-  VolumeMoments moments(result.layout.size);
+  VolumeMoments moments(is_uncertain ? result.layout.size : 0);
   FadedInVolume faded;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Eigen::Vector3d place = place_of(result.machine, positions[i]);

@@ -340,15 +340,9 @@ FitResult result_from(const Json& json) {
   result.covariance = json_parts::covariance_from(json.at("covariance"));
   if (result.parameters.size() != result.layout.size)
     throw std::invalid_argument("parameters do not fit the layout");
-  if (result.covariance.rows() != result.parameters.size())
+  if (result.covariance.size() > 0 && result.covariance.rows() != result.parameters.size())
     throw std::invalid_argument("covariance does not fit the parameters");
   return result;
-}
-
-/// Files have a row per parameter, of stated errors too.
-Eigen::MatrixXd written_covariance(const FitResult& result) {
-  if (result.covariance.size() > 0) return result.covariance;
-  return Eigen::MatrixXd::Zero(result.parameters.size(), result.parameters.size());
 }
 
 }  // namespace
@@ -362,7 +356,7 @@ std::string result_json(const FitResult& result) {
   json["parameters"] = json_parts::vector(result.parameters);
   std::string text = json_text(json, 1);
   text.replace(text.size() - 2, 2,
-               ",\n \"covariance\": " + json_parts::covariance_text(written_covariance(result)) + "\n}\n");
+               ",\n \"covariance\": " + json_parts::covariance_text(result.covariance) + "\n}\n");
   return text;
 }
 

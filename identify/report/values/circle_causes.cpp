@@ -110,7 +110,7 @@ std::vector<CircleCause> causes_of_circle(const Eigen::MatrixXd& rows, const Eig
     if (part.range < kNothing) continue;
     if (identified != nullptr && cause.fitted.size() == cause.here.size()) {
       const Eigen::VectorXd between = own.row(high) - own.row(low);
-      const Eigen::MatrixXd covariance = identified->covariance(cause.fitted, cause.fitted);
+      const Eigen::MatrixXd covariance = covariance_of(*identified, cause.fitted);
       part.range_u = std::sqrt(std::max(0.0, between.dot(covariance * between)));
     }
     parts.emplace_back(std::move(part), values);

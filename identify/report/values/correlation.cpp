@@ -46,6 +46,10 @@ ErrorCorrelation error_correlation(const FitResult& result) {
   const auto count = static_cast<Eigen::Index>(errors.size());
   ErrorCorrelation correlation;
   correlation.value = Eigen::MatrixXd::Identity(count, count);
+  if (result.covariance.size() == 0) {
+    for (const ErrorRows& error : errors) correlation.errors.push_back(error.error);
+    return correlation;
+  }
   Eigen::MatrixXd energy(count, count);
   for (Eigen::Index a = 0; a < count; ++a) {
     correlation.errors.push_back(errors[static_cast<std::size_t>(a)].error);

@@ -50,6 +50,7 @@ FitResult extended_result(const FitResult& given, std::span<const EffectFinding>
   result.covariance = Eigen::MatrixXd::Zero(result.layout.size, result.layout.size);
   const auto pairs = shared(given.layout, result.layout);
   for (const auto& [from, to] : pairs) {
+    if (given.covariance.size() == 0) break;
     for (const auto& [from2, to2] : pairs) result.covariance(to, to2) = given.covariance(from, from2);
   }
   for (const EffectFinding& effect : added) {

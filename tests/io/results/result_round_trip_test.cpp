@@ -172,6 +172,17 @@ TEST(ResultJson, ReturnsTheNoise) {
   EXPECT_TRUE(std::isnan(read.noise.rows[1].low));
 }
 
+/// What is stated has no covariance, and no zeros in proportion to the square of its parameters.
+TEST(ResultJson, KeepsThatStatedErrorsHaveNoCovariance) {
+  FitResult stated = small_result();
+  stated.covariance.resize(0, 0);
+  EXPECT_EQ(nlohmann::json::parse(result_json(stated)).at("covariance").size(), 0u);
+  const FitResult read = result_from_json(result_json(stated), "result.json");
+  EXPECT_EQ(read.covariance.size(), 0);
+  expect_same_bits(read.parameters, stated.parameters);
+  EXPECT_EQ(parameter_variance(read, 0), 0.0);
+}
+
 TEST(ResultJson, KeepsNumbersThatAreNotFinite) {
   FitResult result = small_result();
   result.chi2 = std::numeric_limits<double>::infinity();

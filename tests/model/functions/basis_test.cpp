@@ -138,6 +138,27 @@ TEST(BSpline, GrevilleAbscissaeGiveTheIdentity) {
   for (const double q : {0.0, 0.4, 1.0, 1.9, 3.3, 4.0}) EXPECT_NEAR(basis->value(q, greville), q, 1e-14);
 }
 
+/// The coefficients of 2 - 3 q are 2 - 3 times the Greville abscissae, and its integrals with the functions
+/// give these back.
+TEST(BSpline, CoefficientsFollowFromIntegrals) {
+  const auto basis = spline(3, {0, 1, 2, 4});
+  Eigen::VectorXd greville(6);
+  greville << 0, 1.0 / 3, 1, 7.0 / 3, 10.0 / 3, 4;
+  const BasisMoments moment = moments(*basis);
+  const Eigen::VectorXd line = coefficients_with_integrals(*basis, 2.0 * moment.zeroth - 3.0 * moment.first);
+  for (int j = 0; j < 6; ++j) EXPECT_NEAR(line[j], 2.0 - 3.0 * greville[j], 1e-12) << j;
+}
+
+/// Of degree 1 the coefficients are the values at the breakpoints; 20,001 of them take no matrix of 3 GB.
+TEST(BSpline, CoefficientsFollowFromIntegralsOfThousands) {
+  std::vector<double> breakpoints;
+  for (int i = 0; i <= 20000; ++i) breakpoints.push_back(1e-4 * i);
+  const auto basis = spline(1, breakpoints);
+  const BasisMoments moment = moments(*basis);
+  const Eigen::VectorXd line = coefficients_with_integrals(*basis, moment.first);
+  for (const int j : {0, 1, 7000, 20000}) EXPECT_NEAR(line[j], 1e-4 * j, 1e-12) << j;
+}
+
 TEST(BSpline, UniformAndUnevenBreakpointsFindTheSamePiece) {
   // Equal pieces whose ends are not exact binary numbers.
   const Axis axis = axis_of(AxisName::X, 0.1, 0.8);

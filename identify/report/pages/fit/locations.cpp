@@ -38,7 +38,7 @@ double over_travel(const Machine& machine, LocationSymbol symbol, double value) 
 Json identified(const FitResult& result, const ParameterBlock& block) {
   const LocationSymbol symbol = *block.location;
   const double value = result.parameters[block.offset];
-  const double u = std::sqrt(std::max(0.0, result.covariance(block.offset, block.offset)));
+  const double u = std::sqrt(parameter_variance(result, block.offset));
   const Observability* error = find_observability(result, symbol);
   const bool visible = error == nullptr || error->visible;
   Json row = {{"symbol", symbol.name()},

@@ -29,7 +29,7 @@ const char* kind_name(ParameterKind kind) {
 Json parameter_row(const FitResult& result, const ParameterBlock& block, int i) {
   const int index = block.offset + i;
   const double per_si = 1.0 / block.si_per_unit[static_cast<std::size_t>(i)];
-  const double u = std::sqrt(std::max(0.0, result.covariance(index, index)));
+  const double u = std::sqrt(parameter_variance(result, index));
   const double value = result.parameters[index];
   return {{"name", block.name},
           {"label", block.labels[static_cast<std::size_t>(i)]},

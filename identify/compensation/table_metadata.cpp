@@ -23,7 +23,7 @@ constexpr std::string_view kMetadataFormat = "volcal-tables-1";
 constexpr std::string_view kNotRecorded = "not recorded";
 constexpr std::string_view kEffectConditions = "effects.conditions";
 constexpr std::string_view kAsIdentified = "as identified";
-constexpr std::string_view kNone = "none", kBetween = "; ";
+constexpr std::string_view kNone = "none", kBetween = "; ", kYes = "yes", kNo = "no";
 constexpr std::array<char, 3> kCoordinates = {'x', 'y', 'z'};
 
 class MetadataWriter {
@@ -61,6 +61,7 @@ void add_machine(MetadataWriter& out, const Machine& machine) {
     out.add_number(fmt::format("{}.home_{}", key, unit), axis.home / factor);
     if (is_rotary(axis.name)) {
       out.add_point_mm(key + ".centre", axis.centre);
+      if (axis.endless) out.add(key + ".endless", *axis.endless ? kYes : kNo);
     } else {
       out.add_point_mm(key + ".reference_point", axis.reference_point);
     }
@@ -261,6 +262,14 @@ class MetadataReader {
     return result;
   }
 
+  /// Absent where it does not stand there.
+  std::optional<bool> yes_or_no(const std::string& key) const {
+    if (!rows_.contains(key)) return std::nullopt;
+    const std::string& word = text(key);
+    if (word != kYes && word != kNo) fail(key, "write yes or no");
+    return word == kYes;
+  }
+
   AxisName linear_axis(const std::string& key) const {
     const std::string& letter = text(key);
     const auto axis = letter.size() == 1 ? axis_from_letter(letter[0]) : std::nullopt;
@@ -280,6 +289,7 @@ class MetadataReader {
     if (axis.travel_max <= axis.travel_min) fail(travel_max, "the travel must end beyond its start");
     (is_rotary(name) ? axis.centre : axis.reference_point) =
         point(key + (is_rotary(name) ? ".centre" : ".reference_point"));
+    axis.endless = yes_or_no(key + ".endless");
     return axis;
   }
 

@@ -25,8 +25,7 @@ FiveAxisSettings tcp_settings(const Eigen::Vector3d& tool_offset, bool orientati
 AxisPosition counted_within(const Machine& machine, AxisPosition position) {
   for (const Axis& axis : machine.axes) {
     double& q = position[index_of(axis.name)];
-    const bool turns = is_rotary(axis.name) && axis.travel() > kTcpTurn - 1e-6;
-    if (turns && (q < axis.travel_min || q > axis.travel_max))
+    if (axis.travels_a_turn() && (q < axis.travel_min || q > axis.travel_max))
       q -= kTcpTurn * std::floor((q - axis.travel_min) / kTcpTurn);
   }
   return position;

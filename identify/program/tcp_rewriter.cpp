@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -28,13 +27,23 @@ constexpr double kTcpStill = 1e-12;     // m or rad
 constexpr double kNearPole = 0.1;       // of the orientation error
 constexpr double kHardlyTilted = 1e-7;  // rad
 constexpr double kTcpTravelRounding = 1e-9;
-constexpr double kWholeTurns = 2.0 * std::numbers::pi - 1e-6;
 
 /// G codes that are followed, in tenths.
 constexpr std::array kTcpCodes = {0,   10,  40,  170, 180, 190, 200, 210, 400, 430, 434, 490, 530, 540, 550,
                                   560, 570, 580, 590, 591, 592, 593, 610, 640, 800, 900, 930, 940, 980};
 /// Those of them that are followed outside the mode alone.
 constexpr std::array kOutsideTcp = {430, 434, 530};
+
+/// An axis on the tool's side that travels a turn stops at its ends where nothing else is stated.
+std::string remedy_of_travel(const Axis& axis) {
+  if (!axis.travels_a_turn() || axis.endless)
+    return "check work offsets, tool lengths, units and rotary positions";
+  return fmt::format(
+      "{0} does not carry the workpiece and is taken to stop at the ends of its travel: write positions "
+      "within it, or, where {0} turns without end, endless = true in [axes.{0}] of the machine file, and fit "
+      "again",
+      letter_of(axis.name));
+}
 
 bool is_stop(int m) { return m == 0 || m == 10 || m == 20 || m == 300 || m == 600; }
 
@@ -191,21 +200,25 @@ TcpRewriter::Node TcpRewriter::node_at(double t) {
   return {t, tcp_->command(TcpPose::between(from_, to_, t), last_directions_)};
 }
 
-void TcpRewriter::require_reachable(const TcpPose& sent) const {
+/// Notes what turns beyond its travel without a word of the machine's owner.
+void TcpRewriter::require_reachable(const TcpPose& sent) {
   const AxisPosition position = tcp_->axes_at(sent);
   for (const Axis& axis : machine_.axes) {
     const double q = position[index_of(axis.name)];
-    const bool turns = is_rotary(axis.name) && axis.travel() > kWholeTurns;
     const bool inside =
         q >= axis.travel_min - kTcpTravelRounding && q <= axis.travel_max + kTcpTravelRounding;
-    if (turns || inside) continue;
+    if (inside) continue;
+    if (machine_.is_endless(axis.name)) {
+      if (!axis.endless) summary_.assumed_endless.insert(axis.name);
+      continue;
+    }
     const Unit unit = position_unit(axis.name);
     place().refuse(
         fmt::format("the block takes {} to {:.4f} {} in machine coordinates, outside its travel {:g} "
                     "to {:g} {}",
                     letter_of(axis.name), q / unit.si_per_unit, unit.suffix,
                     axis.travel_min / unit.si_per_unit, axis.travel_max / unit.si_per_unit, unit.suffix),
-        "check work offsets, tool lengths, units and rotary positions");
+        remedy_of_travel(axis));
   }
 }
 

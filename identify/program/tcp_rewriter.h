@@ -17,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -59,6 +60,8 @@ struct TcpSummary {
   std::int64_t first_near_pole = 0;
   std::int64_t beyond_readings = 0;  ///< nodes beyond the measured positions: errors are held there
   std::int64_t first_beyond = 0;     ///< line of the first of them
+  /// Axes that went beyond their travel, taken to turn without end since they carry the workpiece.
+  std::set<AxisName> assumed_endless;
   double length = 0.0;               ///< of feed motions, m
   TcpErrors before, after;           ///< where a check is asked for
 };
@@ -93,7 +96,7 @@ class TcpRewriter {
   double distance(const Node& node, const TcpPose& chord) const;
   Node node_at(double t);
   ApproachDirection directions_at(double t);
-  void require_reachable(const TcpPose& sent) const;
+  void require_reachable(const TcpPose& sent);
   void write_block(const TcpWords& words, const NcBlock& block, const std::vector<Node>& nodes);
   std::string coordinates(const Node& node);
   void note_errors(const std::vector<Node>& nodes);

@@ -23,7 +23,6 @@ std::string letter(AxisName axis) { return std::string(1, letter_of(axis)); }
 constexpr double kLeastApart = 1e-3;  // of the travel
 constexpr double kPiecesOfAGap = 2.0;
 constexpr double kMostOfTravel = 0.9;
-constexpr double kWholeTurn = 2.0 * std::numbers::pi - 1e-6;  // rad
 
 bool axis_moves(const Campaign& campaign, AxisName axis) {
   const MeasuredRange range = measured_range(campaign, axis);
@@ -156,7 +155,7 @@ std::size_t spheres(const ParameterLayout& layout) {
 bool is_measured_in_part(const Campaign& campaign, AxisName axis, Finding& cause) {
   const Axis& own = campaign.machine.axis(axis);
   const MeasuredRange range = measured_range(campaign, axis);
-  if (own.travel() >= kWholeTurn || range.max - range.min >= kMostOfTravel * own.travel()) return false;
+  if (own.travels_a_turn() || range.max - range.min >= kMostOfTravel * own.travel()) return false;
   cause.data["partly"] = letter(axis);
   for (const auto& [key, value] :
        {std::pair("from", range.min), std::pair("to", range.max), std::pair("travel_from", own.travel_min),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <numbers>
 #include <span>
 #include <stdexcept>
 
@@ -10,6 +11,8 @@
 
 namespace volcal {
 namespace {
+
+constexpr double kTurnOfTravel = 2.0 * std::numbers::pi - 1e-6;  // rad
 
 class StructureReader {
  public:
@@ -126,6 +129,13 @@ std::array<LocationSymbol, 3> Datum::squareness() const {
   return {{{rotation_about(third()), secondary},
            {rotation_about(primary), third()},
            {rotation_about(secondary), third()}}};
+}
+
+bool Axis::travels_a_turn() const { return is_rotary(name) && travel() > kTurnOfTravel; }
+
+bool Machine::is_endless(AxisName wanted) const {
+  const Axis& own = axis(wanted);
+  return own.travels_a_turn() && own.endless.value_or(structure.is_on_workpiece_side(wanted));
 }
 
 const Axis& Machine::axis(AxisName wanted) const {

@@ -46,9 +46,13 @@ struct Axis {
   Eigen::Vector3d reference_point = Eigen::Vector3d::Zero();
   /// Rotary: a point of the nominal axis line, machine coordinates with all axes at 0.
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  /// Rotary: whether it turns without end, where the owner says so; see Machine::is_endless().
+  std::optional<bool> endless;
   std::optional<ScaleExpansion> expansion;
 
   double travel() const { return travel_max - travel_min; }
+  /// Rotary: every direction is within the travel.
+  bool travels_a_turn() const;
 };
 
 struct Tool {
@@ -83,6 +87,9 @@ struct Machine {
   std::vector<AxisName> parallel_axes() const;     ///< of U V W those of the machine, in this order
   std::vector<AxisName> linear_axes() const;       ///< the main ones, then the parallel ones
   std::vector<AxisName> rotary_axes() const;       ///< in the structure's order
+  /// Whether an axis turns without end, beyond the ends of its travel: as its owner says; where nothing is
+  /// said, a rotary axis that travels a turn and carries the workpiece. The tool's side has cables.
+  bool is_endless(AxisName axis) const;
   std::optional<std::size_t> tool_index(const std::string& wanted) const;
   /// The tools; of a machine without any the spindle reference, as one tool without a name.
   std::vector<Tool> functional_tools() const;

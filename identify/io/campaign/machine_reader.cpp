@@ -27,7 +27,7 @@ Eigen::Vector3d position_or_zero(const TomlTable& table, const std::string& key)
 }
 
 std::string axis_remedy(bool rotary) {
-  return rotary ? "rotary axes take travel_deg, home_deg and centre_mm"
+  return rotary ? "rotary axes take travel_deg, home_deg, centre_mm and endless"
                 : "linear axes take travel_mm, home_mm and reference_point_mm";
 }
 
@@ -89,6 +89,7 @@ class MachineReader {
     }
     if (rotary) {
       axis.centre = position_or_zero(table, "centre_mm");
+      read_endless(table, axis);
     } else {
       axis.reference_point = position_or_zero(table, "reference_point_mm");
     }
@@ -99,7 +100,8 @@ class MachineReader {
   static void reject_other_family(const TomlTable& table, bool rotary) {
     for (const std::string& key : table.keys()) {
       const bool linear_key = key == "travel_mm" || key == "home_mm" || key == "reference_point_mm";
-      const bool rotary_key = key == "travel_deg" || key == "home_deg" || key == "centre_mm";
+      const bool rotary_key =
+          key == "travel_deg" || key == "home_deg" || key == "centre_mm" || key == "endless";
       if (rotary ? linear_key : rotary_key) {
         table.fail(key, "unknown key " + table.path() + "." + key, axis_remedy(rotary));
       }
@@ -123,6 +125,13 @@ class MachineReader {
     if (!rotary && axis.travel() < kShortestTravel) {
       table.fail(key, name + " is shorter than 2 mm", "wrong unit by 1000? travel_mm is stated in mm");
     }
+  }
+
+  static void read_endless(const TomlTable& table, Axis& axis) {
+    axis.endless = table.boolean("endless");
+    if (!axis.endless.value_or(false) || axis.travels_a_turn()) return;
+    table.fail("endless", table.path() + ".endless is true and travel_deg less than a turn",
+               "give travel_deg = [-180.0, 180.0], or leave endless out");
   }
 
   static std::optional<ScaleExpansion> read_expansion(const TomlTable& table) {

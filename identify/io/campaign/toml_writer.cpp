@@ -43,6 +43,7 @@ std::string axis_toml(const Axis& axis) {
   text += rotary ? "centre_mm = " + array(axis.centre, kMetrePerMillimetre)
                  : "reference_point_mm = " + array(axis.reference_point, kMetrePerMillimetre);
   text += "\n";
+  if (axis.endless) text += fmt::format("endless = {}\n", *axis.endless);
   if (axis.expansion) {
     text += fmt::format("expansion_um_per_m_K = {}\nexpansion_sigma_um_per_m_K = {}\ntemperature = {}\n",
                         edge_number(axis.expansion->per_kelvin, kMicro),

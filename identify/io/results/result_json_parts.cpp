@@ -78,6 +78,7 @@ Json axis_json(const Axis& axis) {
   Json json = {{"name", std::string(1, letter_of(axis.name))},    {"travel_min", number(axis.travel_min)},
                {"travel_max", number(axis.travel_max)},           {"home", number(axis.home)},
                {"reference_point", vector(axis.reference_point)}, {"centre", vector(axis.centre)}};
+  if (axis.endless) json["endless"] = *axis.endless;
   if (axis.expansion) {
     json["expansion"] = {{"per_kelvin", number(axis.expansion->per_kelvin)},
                          {"per_kelvin_sigma", number(axis.expansion->per_kelvin_sigma)},
@@ -94,6 +95,7 @@ Axis axis_from(const Json& json) {
   axis.home = number(json.at("home"));
   axis.reference_point = vector3_from(json.at("reference_point"));
   axis.centre = vector3_from(json.at("centre"));
+  if (json.contains("endless")) axis.endless = json.at("endless").get<bool>();
   if (!(axis.travel_min < axis.travel_max)) throw std::invalid_argument("an axis has no travel");
   if (json.contains("expansion")) {
     const Json& expansion = json.at("expansion");

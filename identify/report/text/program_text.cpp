@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/model/description/units.h"
@@ -105,6 +108,12 @@ nlohmann::ordered_json tcp_errors_json(const TcpErrors& errors) {
           {"axis_max_urad", errors.axis_max / kMicro}};
 }
 
+std::vector<std::string> letters_of(const std::set<AxisName>& axes) {
+  std::vector<std::string> letters;
+  for (const AxisName axis : axes) letters.emplace_back(1, letter_of(axis));
+  return letters;
+}
+
 }  // namespace
 
 std::string tcp_summary_text(const TcpSummary& summary, bool checked) {
@@ -127,6 +136,11 @@ std::string tcp_summary_text(const TcpSummary& summary, bool checked) {
         "! {} positions, the first in line {}, lie beyond the measured ones: the last measured error is "
         "held\n",
         count_number(summary.beyond_readings), count_number(summary.first_beyond));
+  for (const AxisName axis : summary.assumed_endless)
+    text += fmt::format(
+        "! {0} goes beyond its travel: it carries the workpiece and is taken to turn without end, unless "
+        "endless = false stands in [axes.{0}] of the machine file\n",
+        letter_of(axis));
   if (!checked) return text;
   TextTable table(
       {{"", Align::Left}, {"RMS [um]"}, {"max [um]"}, {"in line"}, {"axis RMS [urad]"}, {"max [urad]"}},
@@ -146,7 +160,8 @@ nlohmann::ordered_json tcp_summary_json(const TcpSummary& summary, bool checked)
                                  {"largest_correction_um", summary.largest_correction / kMicro},
                                  {"largest_rotary_correction_urad", summary.largest_turn / kMicro},
                                  {"positions_near_poles", summary.near_poles},
-                                 {"positions_beyond_readings", summary.beyond_readings}};
+                                 {"positions_beyond_readings", summary.beyond_readings},
+                                 {"assumed_endless", letters_of(summary.assumed_endless)}};
   if (checked) {
     json["check"] = {{"feed_length_mm", summary.length / kMetrePerMillimetre},
                      {"before", tcp_errors_json(summary.before)},

@@ -3,12 +3,15 @@
 
 #include "volcal/identify/program/tcp_rewriter.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -25,7 +28,9 @@ namespace volcal {
 namespace {
 
 using Eigen::Vector3d;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// All errors of rotary axes, and of linear ones too.
 FitResult five_axis_result(const std::string& structure) {
@@ -315,6 +320,33 @@ TEST(TcpRewriter, SaysWhatLiesBeyondTheReadings) {
   options.within_readings = true;
   EXPECT_THAT(testing::refusal([&] { tcp_rewritten(begin + "G1 A30 F100\n", result, options); }),
               HasSubstr("beyond the positions that were measured"));
+}
+
+/// C of a table goes round, that of a head stops at 180 degrees, whose travel is the same; the owner may say
+/// otherwise of both.
+TEST(TcpRewriter, ATableTurnsWithoutEndAndAHeadStops) {
+  const auto with = [](const char* structure, std::optional<bool> endless) {
+    FitResult result = five_axis_result(structure);
+    for (Axis& axis : result.machine.axes) {
+      if (axis.name == AxisName::C) axis.endless = endless;
+    }
+    return result;
+  };
+  const auto program = [](char tilt) {
+    return fmt::format("G21 G90 G54\nG0 {}0 C170\nG43.4 H1\nG0 X0 Y0 Z0\nG1 C200 F100\n", tilt);
+  };
+  const auto refused = [&](const FitResult& result, char tilt) {
+    return testing::refusal([&] { tcp_rewritten(program(tilt), result); });
+  };
+  const std::set<AxisName> c = {AxisName::C}, none;
+  EXPECT_EQ(tcp_rewritten(program('A'), with(testing::kTrunnion, {})).summary.assumed_endless, c);
+  EXPECT_EQ(tcp_rewritten(program('A'), with(testing::kTrunnion, true)).summary.assumed_endless, none);
+  EXPECT_EQ(tcp_rewritten(program('B'), with(testing::kHead, true)).summary.assumed_endless, none);
+  EXPECT_THAT(refused(with(testing::kHead, {}), 'B'),
+              AllOf(HasSubstr("takes C to 200."), HasSubstr("outside its travel -180 to 180 deg"),
+                    HasSubstr("C does not carry the workpiece"), HasSubstr("endless = true in [axes.C]")));
+  EXPECT_THAT(refused(with(testing::kTrunnion, false), 'A'),
+              AllOf(HasSubstr("outside its travel -180 to 180 deg"), Not(HasSubstr("endless"))));
 }
 
 TEST(TcpRewriter, FollowsTraoriAndInverseTime) {

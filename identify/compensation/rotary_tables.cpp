@@ -19,13 +19,18 @@ double rotary_table_step(const TableFormatOptions& options) {
   return options.rotary_step > 0.0 ? options.rotary_step : kDefaultRotaryTableStep;
 }
 
-Eigen::Vector3d displacement_at_home(const FitResult& result, const TableFormatOptions& options) {
+Eigen::Vector3d error_at_home_of_table(const FitResult& result, const TableFormatOptions& options) {
   const auto table = outermost_table_axis(result.machine.structure);
   const std::vector<AxisName> identified = identified_rotary_axes(result);
-  const bool is_left = table && std::ranges::find(identified, *table) != identified.end() &&
-                       !options.type.linear().empty() && options.type.has(CompensationPart::RotaryLocation);
+  const bool is_left =
+      table && std::ranges::find(identified, *table) != identified.end() && !options.type.linear().empty();
   if (!is_left) return Eigen::Vector3d::Zero();
   return errors_to_correct(result, options)(home_of(result.machine), kTowardsPlus);
+}
+
+Eigen::Vector3d displacement_at_home(const FitResult& result, const TableFormatOptions& options) {
+  if (!options.type.has(CompensationPart::RotaryLocation)) return Eigen::Vector3d::Zero();
+  return error_at_home_of_table(result, options);
 }
 
 void add_displacement_of_table(const Structure& structure, const Eigen::Vector3d& displacement,

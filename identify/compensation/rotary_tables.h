@@ -18,8 +18,10 @@ double rotary_table_step(const TableFormatOptions& options);
 
 /// Error of the linear axes at home approached towards +, m, which their tables leave, since they are zero
 /// there. Where a table turns the workpiece it does not turn with it: it is a displacement of the table's
-/// outermost axis, which R-POR corrects. Zero where there is no such axis or its errors were not identified,
-/// and where the type has no tables of linear axes or no R-POR.
+/// outermost axis. Zero where there is no such axis or its errors were not identified, and where the type has
+/// no tables of linear axes.
+Eigen::Vector3d error_at_home_of_table(const FitResult& result, const TableFormatOptions& options);
+/// The same where the type has R-POR, which corrects it; otherwise zero.
 Eigen::Vector3d displacement_at_home(const FitResult& result, const TableFormatOptions& options);
 
 /// Of all rotary axes at a pose, with displacement_at_home().

@@ -120,6 +120,14 @@ std::string levers_of_tilted_head(const Finding& finding) {
       finding.text("axes"), finding.number("rms").in_unit(), finding.number("max").in_unit());
 }
 
+std::string error_at_home_turns(const Finding& finding) {
+  return fmt::format(
+      "tables of linear axes are zero at home: the error of these axes there, {:.2f} um, is left, and to the "
+      "workpiece that a table ({}) turns it is a displacement of the table's line; R-POR corrects it, in a "
+      "format that holds that",
+      finding.number("error").in_unit(), finding.text("axes"));
+}
+
 std::string tables_off_ideal(const Finding& finding) {
   return fmt::format(
       "between their positions the tables are up to {:.2f} um off the ideal compensation: --tolerance takes "
@@ -237,6 +245,7 @@ std::span<const SentenceMaker> error_sentences() {
       {FindingCode::RotaryErrorsPartlyInTables, rotary_partly_in_tables},
       {FindingCode::RotaryErrorsUnknownToTables, rotary_unknown_to_tables},
       {FindingCode::LeversOfTiltedHead, levers_of_tilted_head},
+      {FindingCode::ErrorAtHomeTurns, error_at_home_turns},
       {FindingCode::TablesOffIdeal, tables_off_ideal},
       {FindingCode::RotaryTablesOffIdeal, rotary_tables_off_ideal},
       {FindingCode::RotaryTablesWithoutDirections, rotary_tables_without_directions},

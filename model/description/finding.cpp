@@ -105,6 +105,7 @@ constexpr auto kFindingCodes = [] {
       {RotaryErrorsPartlyInTables, "errors.rotary-partly-in-tables", Severity::Warning},
       {RotaryErrorsUnknownToTables, "errors.rotary-unknown-to-tables", Severity::Warning},
       {LeversOfTiltedHead, "compensation.levers-of-tilted-head", Severity::Warning},
+      {ErrorAtHomeTurns, "compensation.error-at-home-turns", Severity::Warning},
       {TablesOffIdeal, "compensation.tables-off-ideal", Severity::Warning},
       {RotaryTablesOffIdeal, "compensation.rotary-tables-off-ideal", Severity::Warning},
       {RotaryTablesWithoutDirections, "compensation.rotary-tables-without-directions", Severity::Warning},

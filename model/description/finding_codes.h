@@ -101,6 +101,7 @@ enum class FindingCode : std::uint8_t {
   RotaryErrorsPartlyInTables,
   RotaryErrorsUnknownToTables,
   LeversOfTiltedHead,
+  ErrorAtHomeTurns,
   TablesOffIdeal,
   RotaryTablesOffIdeal,
   RotaryTablesWithoutDirections,

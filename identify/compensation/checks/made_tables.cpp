@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "volcal/identify/compensation/rotary_tables.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"
@@ -14,6 +15,7 @@ namespace volcal {
 namespace {
 
 constexpr double kNotableLever = 0.1e-6;      // m
+constexpr double kNotableAtHome = 0.1e-6;     // m
 constexpr double kNotableReversal = 0.1e-6;   // m
 constexpr double kNotableIncrease = 0.05e-6;  // m
 constexpr double kCoarseStep = 3.0;           // tolerances
@@ -55,6 +57,20 @@ void report_levers(const Machine& machine, MadeTables& made) {
                            {{"axes", head},
                             {"rms", in_micrometres(made.all_axes->levers.rms)},
                             {"max", in_micrometres(made.all_axes->levers.max)}}});
+}
+
+/// Along the line of a table's only axis nothing turns.
+void report_error_at_home(const FitResult& result, MadeTables& made) {
+  if (made.options.type.has(CompensationPart::RotaryLocation)) return;
+  Eigen::Vector3d turning = error_at_home_of_table(result, made.options);
+  std::vector<AxisName> tables = result.machine.rotary_axes();
+  std::erase_if(tables, [&](AxisName axis) { return !result.machine.structure.is_on_workpiece_side(axis); });
+  if (tables.size() == 1) turning[direction_of(tables.front())] = 0.0;
+  if (turning.norm() < kNotableAtHome) return;
+  std::string letters;
+  for (const AxisName axis : tables) letters += letter_of(axis);
+  made.cautions.push_back(
+      {FindingCode::ErrorAtHomeTurns, {{"axes", letters}, {"error", in_micrometres(turning.norm())}}});
 }
 
 /// Positions that were not chosen by a tolerance.
@@ -124,6 +140,7 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
   made.effects_left_out = left_out_by(made.options.type, result);
   report_unknown_axes(result, made.cautions);
   report_levers(result.machine, made);
+  report_error_at_home(result, made);
   report_step(result, made);
   report_rotary_step(wanted, made);
   report_rotary_directions(made);

@@ -15,6 +15,7 @@
 #include "tests/support/rotary_machines.h"
 #include "tests/support/table_samples.h"
 #include "volcal/identify/compensation/checks/made_tables.h"
+#include "volcal/identify/compensation/five_axis_compensation.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/errors/volume/error_budget.h"
@@ -168,6 +169,45 @@ TEST(TablesOfATable, HaveNoLeverThatTurns) {
   EXPECT_LT(made.all_axes->exported.rms, 0.05e-6);
   EXPECT_FALSE(is_said(made, FindingCode::LeversOfTiltedHead));
   EXPECT_TRUE(is_said(made, FindingCode::RotaryErrorsUnknownToTables)) << "nothing of A was identified";
+}
+
+/// Errors of 4 um in y and 7 um in z everywhere, home included. Along the line of a single table C nothing
+/// turns, which leaves the 4 um across it; of a table on a table sqrt(4^2 + 7^2) um. Half a turn of C shows
+/// twice the 4 um to the workpiece.
+TEST(TablesOfATable, SayWhatTheyLeaveOfTheErrorAtHome) {
+  testing::GivenErrors given;
+  given.functions["EYX"] = [](double) { return 4e-6; };
+  given.functions["EZY"] = [](double) { return -7e-6; };
+  given.locations = {{"EX0C", 5e-6}};
+  const auto of_type = [&](const char* structure, const char* type) {
+    const FitResult result = testing::result_with(testing::rotary_machine(structure), given, 4);
+    return tables_of(result, "csv", CompensationType::parse(type));
+  };
+  const auto said = [](const MadeTables& made) {
+    const auto found = std::ranges::find(made.cautions, FindingCode::ErrorAtHomeTurns, &Finding::code);
+    return found == made.cautions.end() ? 0.0 : found->number("error").si;
+  };
+  EXPECT_NEAR(said(of_type("w C' b X Y Z t", "L-VOL")), 4e-6, 1e-11);
+  EXPECT_NEAR(said(of_type("w C' b X Y Z t", "L-VOL+R-POS")), 4e-6, 1e-11);
+  EXPECT_EQ(said(of_type("w C' b X Y Z t", "L-VOL+R-VOL")), 0.0);
+  EXPECT_EQ(said(of_type("w C' b X Y Z t", "R-POS")), 0.0) << "no tables of linear axes";
+  EXPECT_EQ(said(of_type("w b X Y Z C t", "L-VOL")), 0.0) << "C turns no workpiece";
+  given.locations["EY0A"] = 3e-6;
+  EXPECT_NEAR(said(of_type(testing::kTrunnion, "L-VOL")), std::sqrt(65.0) * 1e-6, 1e-11);
+  const FitResult result = testing::result_with(
+      testing::rotary_machine("w C' b X Y Z t"),
+      {.functions = {{"EYX", given.functions["EYX"]}}, .locations = {{"EX0C", 1e-12}}}, 4);
+  const MadeTables made = tables_of(result, "csv", CompensationType::volumetric());
+  FiveAxisSettings settings;
+  settings.tool_offset = result.machine.tools.front().offset;
+  const FiveAxisCompensation machine(result.machine, settings,
+                                     joint_errors(result, result.machine.tools.front(), {}));
+  const auto left_at = [&](double turn) {
+    AxisPosition pose{};
+    pose[index_of(AxisName::C)] = turn;
+    return machine.left_by(made.read_back.correction(pose, {}), pose, {}).displacement_w;
+  };
+  EXPECT_NEAR((left_at(std::numbers::pi) - left_at(0.0)).norm(), 8e-6, 1e-9);
 }
 
 /// Errors of rotary axes alone: what tables add for them with the axes at 0 is no error of the linear axes,

@@ -110,6 +110,10 @@ std::vector<WordedFinding> examples_of_errors() {
        "tables of linear axes are made with the rotary axes at 0: what the errors of linear axes make of "
        "other positions of these leaves 1.90 um RMS, 4.30 um at most over all poses; volcal compensate "
        "corrects a program with the axes where they stand"},
+      {{FindingCode::ErrorAtHomeTurns, {{"axes", "CA"}, {"error", FindingNumber{4e-6, "um", 1e-6}}}},
+       "tables of linear axes are zero at home: the error of these axes there, 4.00 um, is left, and to the "
+       "workpiece that a table (CA) turns it is a displacement of the table's line; R-POR corrects it, in a "
+       "format that holds that"},
       {{FindingCode::TablesOffIdeal, {{"off", FindingNumber{4.2e-6, "um", 1e-6}}}},
        "between their positions the tables are up to 4.20 um off the ideal compensation: --tolerance takes "
        "as many positions as that needs, --step or --positions as many as they say"},

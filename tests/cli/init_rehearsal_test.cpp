@@ -8,6 +8,8 @@
 
 #include "tests/support/long_tests.h"
 #include "tests/support/program.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/planning/expected_result.h"
 
 namespace volcal {
 namespace {
@@ -55,6 +57,25 @@ INSTANTIATE_TEST_SUITE_P(All, InitRehearsal,
                                            RehearsedMachine{"lathe", "w C' b Z X t"},
                                            RehearsedMachine{"plane", "w B' X' b Z t"}),
                          [](const auto& each) { return std::string(each.param.name); });
+
+/// Every combination of the positions of three axes, some 130, with three spheres and three tools: as many
+/// readings as of two axes, and by the rank analysis of their positions no error that they do not show.
+TEST(InitTemplates, ThreeRotaryAxesNeedAFewThousandReadings) {
+  for (const char* structure : {"w C' A' b X Y Z B t", "w b X Y Z C B A t"}) {
+    const testing::ScratchFolder scratch;
+    const std::string folder = scratch.path().string();
+    ASSERT_EQ(run_program("init \"" + std::string(structure) + "\" -o " + folder + "/six").exit_code, 0);
+    const auto simulated = run_program("simulate " + folder + "/six/study.toml -o " + folder + "/rehearsal");
+    ASSERT_EQ(simulated.exit_code, 0) << simulated.errors;
+    const Campaign campaign = read_campaign(folder + "/rehearsal/campaign.toml");
+    EXPECT_GT(campaign.reading_count(), 4500U) << structure;
+    EXPECT_LT(campaign.reading_count(), 6000U) << structure;
+    const FitResult expected = expected_result(campaign, {}, {});
+    EXPECT_GT(expected.rank.errors.size(), 45U);
+    for (const Observability& error : expected.rank.errors)
+      EXPECT_TRUE(error.visible) << structure << " " << error.symbol.name();
+  }
+}
 
 /// A slide on a turntable on the tool's side: its spheres are within reach.
 TEST(InitTemplates, AColumnThatTurnsIsSimulated) {

@@ -106,13 +106,24 @@ std::string listed(const std::vector<AxisName>& axes) {
   return "[" + text + "]";
 }
 
+/// How many positions of each axis make every combination of them a day's work, and how far they are moved
+/// off a grid, as a share of its step: where these are few, as far as the whole travel is met.
+struct TemplateGrid {
+  int of_c, of_others;
+  double jitter;
+};
+
+TemplateGrid grid_of(std::size_t turning) {
+  if (turning <= 1) return {24, 17, 0.3};
+  return turning == 2 ? TemplateGrid{12, 9, 0.3} : TemplateGrid{8, 4, 0.5};
+}
+
 /// positions = { A = 9, C = 12 }; one of an axis that stands.
 std::string positions_table(const Structure& structure, const std::vector<AxisName>& standing = {}) {
   std::string inside;
-  const bool one_turns = rotary_axes(structure).size() == standing.size() + 1;
-  const int of_c = one_turns ? 24 : 12, of_others = one_turns ? 17 : 9;  // of two axes every combination
+  const TemplateGrid grid = grid_of(rotary_axes(structure).size() - standing.size());
   for (const AxisName axis : rotary_axes(structure)) {
-    const int count = contains(standing, axis) ? 1 : axis == AxisName::C ? of_c : of_others;
+    const int count = contains(standing, axis) ? 1 : axis == AxisName::C ? grid.of_c : grid.of_others;
     inside += fmt::format("{}{} = {}", inside.empty() ? "" : ", ", letter_of(axis), count);
   }
   return "{ " + inside + " }";
@@ -282,9 +293,10 @@ std::string rotary_measurements(const Structure& structure) {
         "tools = [\"short\", \"long\", \"side\"]  # two lengths and a lateral offset\n"
         "positions = {}\n"
         "poses = \"grid\"  # every combination; \"singly\": one axis after another, which sees far less\n"
-        "jitter = 0.3  # of a step: regular positions take high harmonics for low ones\n"
+        "jitter = {:.1f}  # of a step: regular positions take high harmonics for low ones\n"
         "noise = {{ constant_um = 0.5, repeatability_um = 0.5 }}\n",
-        schema_with(stays_on_sphere).name, positions_table(structure, alone));
+        schema_with(stays_on_sphere).name, positions_table(structure, alone),
+        grid_of(rotary_axes(structure).size() - alone.size()).jitter);
     for (const TemplateSphere& sphere : spheres_of(structure))
       text += fmt::format("[[measurements.spheres]]\nname = \"{}\"\nposition_mm = {}\n", sphere.name,
                           vector_text(sphere.position_mm));

@@ -8,6 +8,7 @@
 
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/planning/expected_effects.h"
+#include "volcal/identify/planning/measured_positions.h"
 #include "volcal/identify/planning/plan_options.h"
 #include "volcal/model/description/units.h"
 
@@ -138,7 +139,7 @@ CampaignPlan plan_campaign(const PlanSettings& given_settings, const Campaign* g
   const PlanLayout textbook = textbook_layout(same_tools, sight);
   plan.textbook = expected_campaign("textbook", campaign_of(textbook, settings), settings, true);
   plan.textbook.duration = duration(textbook, settings);
-  if (settings.apart_from == nullptr) keep_the_surer(textbook, plan);
+  if (settings.apart_from == nullptr && are_apart(textbook.stations_w)) keep_the_surer(textbook, plan);
   if (given != nullptr) plan.given = expected_campaign("given", *given, settings, true);
   if (!plan.plan.invisible().empty()) {
     tell(settings, "what would make errors visible", 0.9);

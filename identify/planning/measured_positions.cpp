@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kSameLinear = 2e-3;  // m
 constexpr double kSameRotary = kRadianPerDegree;
-constexpr double kSamePlace = 0.03;  // m
 
 bool are_alike(const AxisPosition& a, const AxisPosition& b, bool rotary_alone) {
   return std::ranges::all_of(kAllAxes, [&](AxisName axis) {
@@ -63,8 +62,20 @@ bool MeasuredPositions::has(const AxisPosition& position) const {
 }
 
 bool MeasuredPositions::has_place(const Eigen::Vector3d& place_w) const {
+  return is_one_of(place_w, places_w_);
+}
+
+bool is_one_of(const Eigen::Vector3d& place_w, const std::vector<Eigen::Vector3d>& places_w) {
   return std::ranges::any_of(
-      places_w_, [&](const Eigen::Vector3d& each) { return (each - place_w).norm() < kSamePlace; });
+      places_w, [&](const Eigen::Vector3d& each) { return (each - place_w).norm() < kPlacesApart; });
+}
+
+bool are_apart(const std::vector<Eigen::Vector3d>& places_w) {
+  for (std::size_t i = 0; i < places_w.size(); ++i) {
+    if (is_one_of(places_w[i], {places_w.begin() + static_cast<std::ptrdiff_t>(i) + 1, places_w.end()}))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace volcal

@@ -10,6 +10,13 @@
 
 namespace volcal {
 
+inline constexpr double kPlacesApart = 0.03;  ///< m: nearer to each other two places are one
+
+/// Whether a place is one of these. Workpiece coordinates, m.
+bool is_one_of(const Eigen::Vector3d& place_w, const std::vector<Eigen::Vector3d>& places_w);
+/// Whether no two of them are one.
+bool are_apart(const std::vector<Eigen::Vector3d>& places_w);
+
 class MeasuredPositions {
  public:
   /// Of the campaign that the settings' plan verifies; nothing where there is none.
@@ -18,7 +25,7 @@ class MeasuredPositions {
   /// Within 2 mm and 1 degree of a measured position; of an instrument that turns rotary axes by these alone,
   /// since the linear axes follow.
   bool has(const AxisPosition& position) const;
-  /// Within 30 mm of a place from which was measured.
+  /// Whether it is one of the places from which was measured.
   bool has_place(const Eigen::Vector3d& place_w) const;
 
  private:

@@ -10,6 +10,7 @@
 
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/numeric/threads.h"
+#include "volcal/identify/planning/measured_positions.h"
 #include "volcal/identify/planning/registry.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/finding_codes.h"
@@ -209,16 +210,17 @@ class OptionSearch {
     return "P" + std::to_string(number);
   }
 
-  /// Every tool at the site that is best for it.
+  /// Every tool at the site that is best for it, away from places that are known.
   std::vector<PlanLayout> at_new_places(const LineOfSight& sight, const PlanProblem& problem) const {
-    std::vector<Eigen::Vector3d> sites;
+    std::vector<Eigen::Vector3d> sites, known;
+    for (const NamedPlace& place : known_places()) known.push_back(place.place_w);
     const Eigen::AlignedBox3d& region = sight.stations_w();
     for (int i = 0; i < kOptionSites * kOptionSites * kOptionSites; ++i) {
       const int x = i % kOptionSites, y = i / kOptionSites % kOptionSites,
                 z = i / (kOptionSites * kOptionSites);
       const Eigen::Vector3d cell(x, y, z);
       const Eigen::Vector3d site = region.min() + (cell / (kOptionSites - 1)).cwiseProduct(region.sizes());
-      if (sight.can_stand(site)) sites.push_back(site);
+      if (sight.can_stand(site) && !is_one_of(site, known)) sites.push_back(site);
     }
     std::vector<PlanLayout> layouts;
     for (std::size_t tool = 0; tool < settings_.machine.tools.size(); ++tool) {
@@ -257,10 +259,10 @@ class OptionSearch {
     if (option.new_station) option.what.data["new_place"] = in_mm(layout.stations_w.front());
     option.readings = layout.readings();
     option.volumetric_rms = with.volumetric.rms;
-    option.still_invisible = with.invisible();
+    const std::vector<MachineError> unseen = with.invisible();
     for (const MachineError& error : now_.invisible()) {
-      if (std::ranges::find(option.still_invisible, error) == option.still_invisible.end())
-        option.made_visible.push_back(error);
+      const bool still = std::ranges::find(unseen, error) != unseen.end();
+      (still ? option.still_invisible : option.made_visible).push_back(error);
     }
     return judged;
   }

@@ -1,5 +1,7 @@
 #include "volcal/identify/planning/plan_search.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,10 +9,12 @@
 
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/numeric/threads.h"
+#include "volcal/identify/planning/measured_positions.h"
 #include "volcal/identify/planning/path_choice.h"
 #include "volcal/identify/planning/registry.h"
 #include "volcal/identify/planning/rotary_positions.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -53,6 +57,7 @@ class PlanSearch {
     const std::vector<Eigen::Vector3d> from_corners =
         refined(textbook.stations_w, "stations from corners", 0.3);
     const double lattice = coarse_value(from_lattice), corners = coarse_value(from_corners);
+    if (!are_apart(from_lattice) && !are_apart(from_corners)) fail_without_room();
     if (!std::isfinite(std::min(lattice, corners))) fail_unseen(sight_);
     std::vector<Eigen::Vector3d> stations = lattice <= corners ? from_lattice : from_corners;
     const double ratio = std::sqrt(std::max(lattice, corners) / std::min(lattice, corners));
@@ -71,6 +76,14 @@ class PlanSearch {
  private:
   void progress(const std::string& stage, double done) const {
     if (settings_.progress) settings_.progress(stage, done);
+  }
+
+  [[noreturn]] void fail_without_room() const {
+    const InstrumentWords words = sight_.instrument().words();
+    throw InputError({},
+                     fmt::format("{} {} have no room {:.0f} mm apart where {}", settings_.budget.stations,
+                                 words.places, kPlacesApart / kMetrePerMillimetre, words.region),
+                     "give fewer --stations or a larger --region-mm");
   }
 
   /// Positions of a coarse grid that the stations see; all tools at all stations, or the runs that are left.
@@ -104,7 +117,9 @@ class PlanSearch {
     return std::ranges::find(dropped_, std::pair(station, tool)) != dropped_.end();
   }
 
+  /// Of stations that are one place there is no value.
   double coarse_value(const std::vector<Eigen::Vector3d>& stations) const {
+    if (!are_apart(stations)) return std::numeric_limits<double>::infinity();
     const PlanLayout layout = coarse(stations);
     if (layout.runs.empty()) return std::numeric_limits<double>::infinity();
     const std::size_t affordable = affordable_readings(settings_, layout);
@@ -356,8 +371,10 @@ class PlanSearch {
   std::vector<double> values_of(const PlanLayout& layout,
                                 const std::vector<std::vector<Eigen::Vector3d>>& sets) const {
     std::vector<double> values(sets.size());
-    run_parallel(sets.size(), threads_,
-                 [&](std::size_t i) { values[i] = problem_.value(seen_from(layout, sets[i])); });
+    run_parallel(sets.size(), threads_, [&](std::size_t i) {
+      values[i] = are_apart(sets[i]) ? problem_.value(seen_from(layout, sets[i]))
+                                     : std::numeric_limits<double>::infinity();
+    });
     return values;
   }
 

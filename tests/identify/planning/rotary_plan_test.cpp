@@ -13,7 +13,9 @@
 #include <set>
 
 #include "tests/support/five_axis.h"
+#include "tests/support/refusal.h"
 #include "volcal/identify/planning/campaign_plan.h"
+#include "volcal/identify/planning/plan_options.h"
 #include "volcal/identify/planning/registry.h"
 #include "volcal/identify/planning/rotary_positions.h"
 #include "volcal/identify/solve/fit.h"
@@ -23,7 +25,9 @@
 namespace volcal {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::IsSubsetOf;
 using testing_support::five_axis_machine;
 using testing_support::five_axis_truth;
 using testing_support::state_of;
@@ -294,6 +298,69 @@ TEST(RotaryPlan, BeatsTheTextbookAndSeesEveryError) {
     EXPECT_TRUE(sight.can_stand(sphere_w));
     for (const PlanPosition& each : run.positions) EXPECT_TRUE(sight.sees(sphere_w, each.position, run.tool));
   }
+}
+
+/// One sphere and one tool, and what one setup more would bring.
+struct SmallCampaign {
+  PlanSettings settings;
+  Campaign campaign;
+  ExpectedCampaign now;
+};
+
+SmallCampaign one_small_setup(const std::string& structure) {
+  PlanSettings settings = sphere_plan(structure);
+  settings.budget.stations = 1;
+  settings.budget.readings = 60;
+  settings.budget.tools = {0};
+  const Campaign campaign = campaign_of(textbook_layout(settings, LineOfSight(settings)), settings);
+  return {settings, campaign, expected_campaign("now", campaign, settings, false)};
+}
+
+std::vector<PlanOption> options_of(SmallCampaign& small) {
+  small.settings.existing = &small.campaign;
+  return setup_options(small.settings, small.now).options;
+}
+
+/// More readings take nothing away: what is not visible with them is not without. New spheres stand apart
+/// from the one that there is.
+TEST(RotaryPlan, OneSetupMoreTakesNothingAway) {
+  for (const char* structure : kStructures) {
+    SmallCampaign small = one_small_setup(structure);
+    const std::vector<MachineError> hidden = small.now.invisible();
+    const std::vector<PlanOption> options = options_of(small);
+    ASSERT_GT(options.size(), 3U) << structure;
+    for (const PlanOption& option : options) {
+      EXPECT_THAT(option.still_invisible, IsSubsetOf(hidden)) << structure;
+      EXPECT_EQ(option.still_invisible.size() + option.made_visible.size(), hidden.size()) << structure;
+      if (!option.new_station) continue;
+      const auto place = option.what.data.at("new_place");
+      const auto& at = std::get<std::vector<FindingNumber>>(place);
+      const Eigen::Vector3d sphere_w(at[0].si, at[1].si, at[2].si);
+      const LineOfSight sight(small.settings);
+      EXPECT_GE((sphere_w - sight.textbook_stations_w(1).front()).norm(), 0.03) << structure;
+    }
+  }
+}
+
+/// The same where the rank analysis of more readings says otherwise: here of errors that one sphere and one
+/// tool do not tell, and that are said to be visible.
+TEST(RotaryPlan, WhatIsVisibleStaysSo) {
+  SmallCampaign small = one_small_setup("w C' A' b X Y Z t");
+  ASSERT_GT(small.now.invisible().size(), 5U);
+  for (Observability& error : small.now.result.rank.errors) error.visible = true;
+  for (const PlanOption& option : options_of(small)) EXPECT_THAT(option.still_invisible, IsEmpty());
+}
+
+/// A cube of 20 mm holds no two places 30 mm apart.
+TEST(RotaryPlan, RefusesSpheresThatWouldBeOne) {
+  PlanSettings settings = sphere_plan("w C' A' b X Y Z t");
+  settings.budget.readings = 120;
+  settings.surroundings.stations_w =
+      Eigen::AlignedBox3d(Eigen::Vector3d(0.08, 0.0, 0.05), Eigen::Vector3d(0.1, 0.02, 0.07));
+  EXPECT_THAT(testing::refusal([&] { plan_campaign(settings, nullptr); }),
+              HasSubstr("3 spheres have no room 30 mm apart where spheres may stand"));
+  settings.budget.stations = 1;
+  EXPECT_EQ(plan_campaign(settings, nullptr).searched.layout.stations_w.size(), 1U);
 }
 
 TEST(RotaryPlan, RefusesMachinesWithoutRotaryAxes) {

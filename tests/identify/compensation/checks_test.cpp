@@ -181,7 +181,7 @@ TEST(TablesOfATable, SayWhatTheyLeaveOfTheErrorAtHome) {
   given.locations = {{"EX0C", 5e-6}};
   const auto of_type = [&](const char* structure, const char* type) {
     const FitResult result = testing::result_with(testing::rotary_machine(structure), given, 4);
-    return tables_of(result, "csv", CompensationType::parse(type));
+    return tables_of(result, "neutral-csv", CompensationType::parse(type));
   };
   const auto said = [](const MadeTables& made) {
     const auto found = std::ranges::find(made.cautions, FindingCode::ErrorAtHomeTurns, &Finding::code);

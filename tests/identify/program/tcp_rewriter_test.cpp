@@ -343,7 +343,7 @@ TEST(TcpRewriter, ATableTurnsWithoutEndAndAHeadStops) {
   EXPECT_EQ(tcp_rewritten(program('A'), with(testing::kTrunnion, true)).summary.assumed_endless, none);
   EXPECT_EQ(tcp_rewritten(program('B'), with(testing::kHead, true)).summary.assumed_endless, none);
   EXPECT_THAT(refused(with(testing::kHead, {}), 'B'),
-              AllOf(HasSubstr("takes C to 200."), HasSubstr("outside its travel -180 to 180 deg"),
+              AllOf(HasSubstr("the block takes C to 1"), HasSubstr("outside its travel -180 to 180 deg"),
                     HasSubstr("C does not carry the workpiece"), HasSubstr("endless = true in [axes.C]")));
   EXPECT_THAT(refused(with(testing::kTrunnion, false), 'A'),
               AllOf(HasSubstr("outside its travel -180 to 180 deg"), Not(HasSubstr("endless"))));

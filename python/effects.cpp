@@ -153,7 +153,8 @@ class OwnKind final : public EffectKind {
     const OwnFormula formula{own, written_target(table)};
     const std::string label = own->schema.kind + " " + formula.target.text;
     auto effect = std::make_unique<FormulaEffect>(
-        EffectName{own->schema.kind, formula.target.text, written_list(own->variables), own->shape},
+        EffectName{own->schema.kind, formula.target.name(), EffectDriver::written(own->variables),
+                   own->shape},
         std::vector<EffectAmplitude>{{.label = label,
                                       .target = formula.target.target(),
                                       .key = formula.target.amplitude_key("amplitude"),

@@ -128,9 +128,8 @@ EffectFinding finding(const SearchSetting& setting, const FamilyTest& test) {
   for (const EffectAmplitude& amplitude : std::span(amplitudes).first(count)) {
     const auto at = static_cast<Eigen::Index>(out.amplitudes.size());
     const double u = std::sqrt(std::max(0.0, test.score.covariance(at, at)));
-    std::string label = amplitude.label;
-    if (!family.orders.empty()) label = label.substr(label.rfind(' ') + 1);  // its degree alone
-    out.amplitudes.push_back({std::move(label), test.score.amplitude[at], u,
+    const bool by_degree = !family.orders.empty();
+    out.amplitudes.push_back({by_degree ? amplitude.part : amplitude.label, test.score.amplitude[at], u,
                               u > 0.0 ? u * found_from : std::nan(""), amplitude.unit(),
                               amplitude.si_per_unit()});
   }

@@ -29,8 +29,8 @@ Finding named(const EffectFinding& effect) {
   Finding finding{FindingCode::DiagnosisNamed,
                   {{"effect", effect.label},
                    {"kind", effect.name.kind},
-                   {"target", effect.name.target},
-                   {"driver", effect.name.driver},
+                   {"target", effect.name.target.name()},
+                   {"driver", effect.name.driver.name()},
                    {"shape", effect.shape_text}}};
   if (names.empty()) return finding;
   finding.data["amplitudes"] = names;
@@ -154,7 +154,7 @@ void add_remarks(const Remarks& remarks, Diagnosis& diagnosis) {
                         {{"readings", count(back)}, {"of", count(remarks.removed_by_fit)}}});
   }
   for (const EffectFinding& change : diagnosis.model_changes)
-    findings.push_back({FindingCode::DiagnosisResolution, {{"function", change.name.target}}});
+    findings.push_back({FindingCode::DiagnosisResolution, {{"function", change.name.target.name()}}});
 }
 
 }  // namespace

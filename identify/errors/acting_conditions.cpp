@@ -114,7 +114,7 @@ double shortest_wave(const FitResult& result, AxisName axis) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const EffectSpec& spec : result.identified.effects) {
     const auto effect = find_effect(spec.kind)->make(spec, result.identified.file);
-    if (effect->name().driver != std::string(1, lower_letter_of(axis))) continue;
+    if (!effect->name().driver.is(position_of(axis))) continue;
     for (const EffectShape& shape : effect->shapes()) {
       if (shape.key != "period_mm") continue;
       const ParameterBlock* block = result.layout.find_block(shape.label);

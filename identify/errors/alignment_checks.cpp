@@ -57,7 +57,7 @@ std::set<std::string> by_commanded_positions(const FitResult& result) {
     const EffectKind* kind = find_effect(spec.kind);
     if (kind == nullptr) continue;
     const std::unique_ptr<Effect> effect = kind->make(spec, result.identified.file);
-    if (effect->surface() != nullptr) names.insert(surface_name(*effect));
+    if (effect->surface() != nullptr) names.insert(common_label(*effect));
     if (!effect->changes_with_any_driver()) continue;
     for (const EffectAmplitude& amplitude : effect->amplitudes()) names.insert(amplitude.label);
     for (const EffectShape& shape : effect->shapes()) names.insert(shape.label);

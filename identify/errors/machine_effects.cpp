@@ -234,7 +234,7 @@ class ReachProbe {
     const Eigen::MatrixXd faded = effect.faded_drivers(view);
     reach.acts = !effect.drivers(view, effect.shape_values()).isZero(0.0) || !faded.isZero(0.0);
     if (!reach.acts) return reach;
-    for (const Variable& variable : variables_in(effect.name().driver)) {
+    for (const Variable& variable : effect.name().driver.variables()) {
       if (variable.kind == Variable::Kind::Position) reach.position[index_of(variable.axis)] = true;
       if (variable.kind == Variable::Kind::Direction) reach.direction[index_of(variable.axis)] = true;
       if (variable.kind == Variable::Kind::Time) reach.time = true;

@@ -117,8 +117,8 @@ PlanJson effects_json(const ExpectedCampaign& campaign) {
   PlanJson effects = PlanJson::array();
   for (const DetectableEffect& effect : campaign.detectable) {
     effects.push_back({{"kind", effect.name.kind},
-                       {"target", effect.name.target},
-                       {"driver", effect.name.driver},
+                       {"target", effect.name.target.name()},
+                       {"driver", effect.name.driver.name()},
                        {"shape", effect.name.shape},
                        {"label", effect.label},
                        {"visible", effect.visible},

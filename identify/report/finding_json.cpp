@@ -16,7 +16,7 @@ Json finding_json(const EffectFinding& effect) {
   }
   return {{"label", effect.label},
           {"kind", effect.name.kind},
-          {"driver", effect.name.driver},
+          {"driver", effect.name.driver.name()},
           {"shape", effect.shape_text.empty() ? effect.name.shape : effect.shape_text},
           {"log10_p", rounded(effect.log10_p, 4)},
           {"visible_fraction", rounded(effect.visible_fraction, 3)},

@@ -34,7 +34,7 @@ SurfaceValues values_of(std::shared_ptr<const Effect> effect, const EffectSpec& 
   const TensorBasis& basis = *effect->surface();
   SurfaceValues values;
   values.label = effect_label(*effect);
-  values.target = effect->name().target;
+  values.target = effect->name().target.name();
   values.factor = spec.options.text("factor").value_or("");
   values.drivers = variables_in(*spec.options.text("drivers"));
   values.unit = block.units.front();
@@ -75,7 +75,7 @@ std::vector<SurfaceValues> surface_values(const FitResult& result) {
     if (kind == nullptr) continue;
     std::shared_ptr<const Effect> effect = kind->make(spec, result.identified.file);
     if (effect->surface() == nullptr) continue;
-    if (const ParameterBlock* block = result.layout.find_block(surface_name(*effect)))
+    if (const ParameterBlock* block = result.layout.find_block(common_label(*effect)))
       surfaces.push_back(values_of(std::move(effect), spec, *block, result));
   }
   return surfaces;

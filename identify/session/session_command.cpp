@@ -234,16 +234,10 @@ std::optional<SessionWork> begin_command(Session& session, const SessionCommand&
 }  // namespace
 
 EffectName effect_name_from(const std::string& text) {
-  std::string part[4];
-  std::size_t at = 0;
-  for (int i = 0; i < 4; ++i) {
-    const std::size_t end = i < 3 ? text.find(':', at) : text.size();
-    if (end == std::string::npos || end == at)
-      refuse_command("\"" + text + "\" is not the name of an effect", "write KIND:TARGET:DRIVER:SHAPE");
-    part[i] = text.substr(at, end - at);
-    at = end + 1;
-  }
-  return {part[0], part[1], part[2], part[3]};
+  std::optional<EffectName> name = EffectName::parse(text);
+  if (!name)
+    refuse_command("\"" + text + "\" is not the name of an effect", "write KIND:TARGET:DRIVER:SHAPE");
+  return *std::move(name);
 }
 
 SessionCommand session_command_from(const std::string& line) {

@@ -180,7 +180,7 @@ void report_unrecorded_drivers(const Campaign& campaign, const CampaignBinding& 
     result.findings.push_back({FindingCode::EffectDriverUnrecorded,
                                {{"effect", effect_label(*effect.effect)},
                                 {"readings", static_cast<std::int64_t>(unrecorded)},
-                                {"driver", effect.effect->name().driver}}});
+                                {"driver", effect.effect->name().driver.name()}}});
   }
 }
 

@@ -149,7 +149,7 @@ Json effect_json(const EffectFinding& effect) {
   return {{"name", full_name(effect.name)},
           {"label", effect.label},
           {"kind", effect.name.kind},
-          {"driver", effect.name.driver},
+          {"driver", effect.name.driver.name()},
           {"words", meaning["plain"]},
           {"causes", meaning["usual_causes"]},
           {"amplitudes", std::move(amplitudes)},

@@ -8,7 +8,8 @@
 
 namespace volcal {
 
-/// Temperatures, times and feeds: of the key `temperature`, or among what its law or surface is written of.
+/// Temperatures and feeds: of the key `temperature`, or among its drivers; time where its law or surface is
+/// written of it.
 std::set<Variable> conditions_of_effect(const EffectSpec& spec, const Effect& effect);
 
 }  // namespace volcal

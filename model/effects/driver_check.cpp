@@ -69,11 +69,10 @@ std::optional<Recorded> recorded_range(const Campaign& campaign, const Variable&
 /// Columns without a change; of an expression only where no variable of it changes.
 std::vector<std::string> constant_columns(const Campaign& campaign, const Effect& effect) {
   std::vector<std::string> constant;
-  for (const std::string& word : words_in(effect.name().driver)) {
-    const auto variable = Variable::parse(word);
-    const auto found = variable ? recorded_range(campaign, *variable) : std::nullopt;
+  for (const Variable& variable : effect.name().driver.variables()) {
+    const auto found = recorded_range(campaign, variable);
     const bool unknown_direction = found && found->range.constant() && found->range.min == 0.0 &&
-                                   variable->kind == Variable::Kind::Direction;
+                                   variable.kind == Variable::Kind::Direction;
     if (found && found->range.constant() && !unknown_direction) {
       constant.push_back(found->column);
     } else if (effect.changes_with_any_driver()) {

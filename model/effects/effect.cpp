@@ -1,5 +1,6 @@
 #include "volcal/model/effects/effect.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -23,13 +24,23 @@ void EffectAmplitude::keep(double value, Options& options) const {
 std::string EffectShape::unit() const { return unit_text(unit_of_key(key).suffix); }
 double EffectShape::si_per_unit() const { return unit_of_key(key).si_per_unit; }
 
-std::string surface_name(const Effect& effect) {
-  const std::string& first = effect.amplitudes().front().label;
-  return first.substr(0, first.rfind(' '));
+std::string EffectShape::word() const {
+  std::string word(stem_of_key(key));
+  std::ranges::replace(word, '_', ' ');
+  return word;
+}
+
+std::string part_label(const std::string& of, const std::string& part) {
+  return part.empty() ? of : of + " " + part;
+}
+
+const std::string& common_label(const Effect& effect) {
+  const EffectAmplitude& first = effect.amplitudes().front();
+  return first.part.empty() ? first.label : first.of;
 }
 
 std::string effect_label(const Effect& effect) {
-  return effect.surface() != nullptr ? surface_name(effect) : effect.amplitudes().front().label;
+  return effect.surface() != nullptr ? common_label(effect) : effect.amplitudes().front().label;
 }
 
 std::vector<EffectTerm> Effect::terms() const {

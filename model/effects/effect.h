@@ -16,6 +16,7 @@
 #include "volcal/model/description/model_spec.h"
 #include "volcal/model/description/schema.h"
 #include "volcal/model/description/symbols.h"
+#include "volcal/model/effects/effect_name.h"
 
 namespace volcal {
 
@@ -41,12 +42,20 @@ struct EffectAmplitude {
   std::string key;     ///< schema key of its value, with unit: "amplitude_um_per_K"
   double guess = 0.0;  ///< SI; the value of an identified model, else 0
   int element = -1;    ///< of the list that the key holds; -1: the key holds a number
+  /// Of one of several amplitudes of an effect, what they describe together ("lead error EXX") and which it
+  /// is
+  /// ("cos", "x", "P2"); `part` is empty where there is one alone.
+  std::string of = {};
+  std::string part = {};
 
   std::string unit() const;  ///< edge unit: "um/K"
   double si_per_unit() const;
   /// Keeps a value, SI, where the amplitude is read from.
   void keep(double value, Options& options) const;
 };
+
+/// Label of a part of what several amplitudes describe: "lead error EXX cos".
+std::string part_label(const std::string& of, const std::string& part);
 
 /// One of the places where an amplitude acts, with a driver of its own.
 struct EffectTerm {
@@ -65,6 +74,8 @@ struct EffectShape {
 
   std::string unit() const;
   double si_per_unit() const;
+  /// As sentences call it: "time constant".
+  std::string word() const;
 };
 
 /// A setup as effects see it.
@@ -82,17 +93,6 @@ struct SetupView {
   std::shared_ptr<KeptHistories> histories = {};
 
   std::size_t rows() const { return setup.readings.size(); }
-};
-
-/// How an effect is called in lists, reports and diagnosis.json.
-struct EffectName {
-  std::string kind;    ///< "axis-coupling"
-  std::string target;  ///< "EAY", "tool long z", "station P1", "readings of S1"
-  std::string driver;  ///< "z", "dir_x", "time", "T_spindle"
-  std::string shape;   ///< "step", "linear", "quadratic", "periodic" ...
-
-  friend bool operator==(const EffectName&, const EffectName&) = default;
-  friend auto operator<=>(const EffectName&, const EffectName&) = default;
 };
 
 /// One effect with its keys' values. Immutable, so thread-safe.
@@ -140,9 +140,10 @@ class Effect {
 /// alone. An effect whose amplitudes act on one target each stays as it is.
 std::vector<std::shared_ptr<const Effect>> single_terms(std::shared_ptr<const Effect> effect);
 
-/// Name of the function that the amplitudes of a surface describe together: "surface EAY by y z".
-std::string surface_name(const Effect& effect);
-/// That, or the label of the first amplitude.
+/// What all amplitudes of an effect describe together: "surface EAY by y z", "lead error EXX", "reversal
+/// EXX".
+const std::string& common_label(const Effect& effect);
+/// That of a surface, else the label of the first amplitude.
 std::string effect_label(const Effect& effect);
 
 class EffectKind {

@@ -16,23 +16,28 @@ FormulaEffect::Count without_channel(const std::string& channel) {
   };
 }
 
-EffectAmplitude motion_amplitude(const EffectTable& table, const std::string& label, ErrorSymbol symbol,
-                                 const std::string& per, const std::string& stem) {
-  return {.label = label,
+EffectAmplitude motion_amplitude(const EffectTable& table, const std::string& of, ErrorSymbol symbol,
+                                 const std::string& per, const std::string& part) {
+  const std::string stem = part.empty() ? "amplitude" : part;
+  return {.label = part_label(of, part),
           .target = {.kind = TargetKind::Motion, .symbol = symbol},
           .key = motion_amplitude_key(symbol, per, stem),
-          .guess = table.number(stem, 0.0)};
+          .guess = table.number(stem, 0.0),
+          .of = of,
+          .part = part};
 }
 
-std::vector<EffectAmplitude> vector_amplitudes(const EffectTable& table, const std::string& label,
+std::vector<EffectAmplitude> vector_amplitudes(const EffectTable& table, const std::string& of,
                                                TargetKind kind, const std::string& unit) {
   std::vector<EffectAmplitude> amplitudes;
   for (int k = 0; k < 3; ++k) {
     const std::string component(1, "xyz"[k]);
-    amplitudes.push_back({.label = label + " " + component,
+    amplitudes.push_back({.label = part_label(of, component),
                           .target = {.kind = kind, .symbol = {}, .component = k},
                           .key = component + "_" + unit,
-                          .guess = table.number(component, 0.0)});
+                          .guess = table.number(component, 0.0),
+                          .of = of,
+                          .part = component});
   }
   return amplitudes;
 }
@@ -48,12 +53,14 @@ std::vector<KeySchema> vector_amplitude_keys(const std::string& unit, const std:
   return keys;
 }
 
-EffectAmplitude reading_amplitude(const EffectTable& table, const std::string& label, const std::string& key,
-                                  int channel) {
-  return {.label = label,
+EffectAmplitude reading_amplitude(const EffectTable& table, const std::string& of, const std::string& key,
+                                  int channel, const std::string& part) {
+  return {.label = part_label(of, part),
           .target = {.kind = TargetKind::Reading, .symbol = {}, .component = channel},
           .key = key,
-          .guess = table.number(std::string(stem_of_key(key)), 0.0)};
+          .guess = table.number(std::string(stem_of_key(key)), 0.0),
+          .of = of,
+          .part = part};
 }
 
 EffectShape shape_parameter(const EffectTable& table, const std::string& label, const std::string& stem,

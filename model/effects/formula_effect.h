@@ -82,16 +82,17 @@ class FormulaKind final : public EffectKind {
 FormulaEffect::Count without_time();
 FormulaEffect::Count without_channel(const std::string& channel);
 
-/// An amplitude of an error motion: key "amplitude_um_<per>" or "amplitude_urad_<per>".
-EffectAmplitude motion_amplitude(const EffectTable& table, const std::string& label, ErrorSymbol symbol,
-                                 const std::string& per, const std::string& stem = "amplitude");
+/// An amplitude of an error motion: key "amplitude_um_<per>" or "amplitude_urad_<per>"; of one of several,
+/// `part` in the place of "amplitude".
+EffectAmplitude motion_amplitude(const EffectTable& table, const std::string& of, ErrorSymbol symbol,
+                                 const std::string& per, const std::string& part = {});
 /// Amplitudes along x, y, z of a tool's offset or a station: keys "x_<unit>", "y_<unit>", "z_<unit>".
-std::vector<EffectAmplitude> vector_amplitudes(const EffectTable& table, const std::string& label,
+std::vector<EffectAmplitude> vector_amplitudes(const EffectTable& table, const std::string& of,
                                                TargetKind kind, const std::string& unit);
 std::vector<KeySchema> vector_amplitude_keys(const std::string& unit, const std::string& help);
 /// An amplitude of a channel of the reading.
-EffectAmplitude reading_amplitude(const EffectTable& table, const std::string& label, const std::string& key,
-                                  int channel = 0);
+EffectAmplitude reading_amplitude(const EffectTable& table, const std::string& of, const std::string& key,
+                                  int channel = 0, const std::string& part = {});
 /// A parameter of the shape, from keys "<stem>_<unit>" and "<stem>_sigma_<unit>"; the range is where it is
 /// looked for when it is unknown.
 EffectShape shape_parameter(const EffectTable& table, const std::string& label, const std::string& stem,

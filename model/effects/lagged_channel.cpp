@@ -126,7 +126,7 @@ std::unique_ptr<FormulaEffect> motion_by_history(const EffectTable& table, const
   const ErrorSymbol symbol = table.symbol();
   const std::string channel = channel_of(table), label = symbol.name() + " " + history.label;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{table.spec.kind, symbol.name(), history.driver, history.shape},
+      EffectName{table.spec.kind, symbol, history.driver, history.shape},
       std::vector{motion_amplitude(table, label, symbol, "per_K")}, formula_of(history, channel, 1),
       [symbol, channel, label](const Campaign& campaign, const SourcePlace& place) {
         check_axis(campaign, symbol.axis, label, place);
@@ -139,7 +139,7 @@ std::unique_ptr<FormulaEffect> motion_by_history(const EffectTable& table, const
 std::unique_ptr<FormulaEffect> tool_by_history(const EffectTable& table, const ChannelHistory& history) {
   const std::string channel = channel_of(table), label = "tool " + history.label;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{table.spec.kind, "tool", history.driver, history.shape},
+      EffectName{table.spec.kind, TargetName::of_tool(), history.driver, history.shape},
       vector_amplitudes(table, label, TargetKind::ToolOffset, "um_per_K"), formula_of(history, channel, 3),
       [channel, label](const Campaign& campaign, const SourcePlace& place) {
         check_time_and_channel(campaign, channel, label, place);

@@ -41,9 +41,9 @@ Eigen::VectorXd lagged_excess(const SetupView& view, const std::string& channel,
 
 /// How an effect depends on what a channel was before; its shape is the time constant, added by the kind.
 struct ChannelHistory {
-  std::string label;   ///< "late by air", behind what is moved
-  std::string driver;  ///< "T_air"
-  std::string shape;   ///< "lag"
+  std::string label;  ///< "late by air", behind what is moved
+  EffectDriver driver;
+  std::string shape;  ///< "lag"
   Eigen::VectorXd (*values)(const SetupView& view, const std::string& channel, double time_constant);
 };
 /// Of the error motion, or the tool, that a table with key `temperature` is about.

@@ -85,6 +85,19 @@ WrittenTarget written_target(const EffectTable& table) {
   return *target;
 }
 
+TargetName WrittenTarget::name() const {
+  switch (kind) {
+    case TargetKind::Motion:
+      return symbol;
+    case TargetKind::ToolOffset:
+      return TargetName::of_tool(owner, component);
+    case TargetKind::Station:
+      return TargetName::of_station(owner, component);
+    default:
+      return TargetName::called(text);
+  }
+}
+
 bool WrittenTarget::acts_on(const Campaign& campaign, const Setup& setup) const {
   switch (kind) {
     case TargetKind::ToolOffset:

@@ -17,6 +17,7 @@ struct WrittenTarget {
   std::string column;  ///< of Reading
   bool angle = false;  ///< amplitudes are in urad, else in um
 
+  TargetName name() const;
   EffectTarget target() const { return {.kind = kind, .symbol = symbol, .component = component}; }
   /// Key of an amplitude: "amplitude_um" for the stem "amplitude".
   std::string amplitude_key(const std::string& stem) const { return stem + (angle ? "_urad" : "_um"); }

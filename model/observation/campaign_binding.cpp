@@ -48,7 +48,7 @@ ParameterBlock surface_block(const Effect& effect) {
   const auto size = static_cast<Eigen::Index>(effect.amplitudes().size());
   const EffectAmplitude& first = effect.amplitudes().front();
   ParameterBlock block =
-      scalar_block(ParameterKind::Effect, surface_name(effect), first.unit(), first.si_per_unit());
+      scalar_block(ParameterKind::Effect, common_label(effect), first.unit(), first.si_per_unit());
   block.units.assign(effect.amplitudes().size(), block.units.front());
   block.si_per_unit.assign(effect.amplitudes().size(), block.si_per_unit.front());
   block.guess = block.prior_mean = block.prior_sigma = Eigen::VectorXd::Zero(size);

@@ -110,7 +110,7 @@ void define_effect(py::module_& module) {
           "kind", [](const EffectFinding& effect) { return text_of(effect.name.kind); },
           "Kind: \"axis-coupling\".")
       .def_property_readonly(
-          "target", [](const EffectFinding& effect) { return text_of(effect.name.target); },
+          "target", [](const EffectFinding& effect) { return text_of(effect.name.target.name()); },
           "What it acts on: \"EAY\", \"tool long z\", \"station P1\".")
       .def_property_readonly(
           "label", [](const EffectFinding& effect) { return text_of(effect.label); }, "How reports call it.")

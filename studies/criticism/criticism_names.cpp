@@ -69,7 +69,8 @@ class ExpectedDiagnosis {
     const EffectKind* found = find_effect(kind);
     for (EffectSpec& spec : found->candidates(campaign_)) {
       const EffectName candidate = found->make(spec, {})->name();
-      if (candidate.target != target || (!driver.empty() && candidate.driver != driver)) continue;
+      if (candidate.target.name() != target || (!driver.empty() && candidate.driver.name() != driver))
+        continue;
       if (!shape.empty() && candidate.shape != shape) continue;
       for (const char* stem : {"period", "time_constant", "time", "length"}) {
         if (const auto value = hidden_.options.number(stem)) spec.options.set(stem, *value);

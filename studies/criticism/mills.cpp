@@ -181,7 +181,7 @@ void judge(const std::vector<EffectFinding>& accepted, const std::vector<std::st
     return std::ranges::find(hidden, name) != hidden.end();
   };
   for (const EffectFinding& effect : accepted) {
-    if (effect.name.kind == "rack-error" && effect.name.target == "EXX" && is_hidden(kRack)) {
+    if (effect.name.kind == "rack-error" && effect.name.target.name() == "EXX" && is_hidden(kRack)) {
       record.found.emplace_back(kRack);
     } else if (effect.name.kind != kLeftOut) {
       record.wrong_effects.push_back(effect.label);

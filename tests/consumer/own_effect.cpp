@@ -21,7 +21,9 @@ std::unique_ptr<volcal::FormulaEffect> make_play(const volcal::EffectTable& tabl
   const volcal::ErrorSymbol symbol = table.symbol();
   const std::string label = "play " + symbol.name();
   return std::make_unique<volcal::FormulaEffect>(
-      volcal::EffectName{"play", symbol.name(), "approach", "step"},
+      volcal::EffectName{
+          "play", symbol,
+          volcal::EffectDriver::called("approach", {volcal::direction_of_approach(symbol.axis)}), "step"},
       std::vector{volcal::motion_amplitude(table, label, symbol, "")},
       [symbol](const volcal::SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return 0.5 * approach(view, symbol.axis);

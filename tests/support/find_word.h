@@ -75,8 +75,8 @@ inline bool is_of_pattern(const std::string& text, std::string_view pattern) {
 
 /// Absent when there is none.
 inline std::optional<EffectWord> find_word(NamePart part, const EffectName& name) {
-  const std::string& text = part == NamePart::Target   ? name.target
-                            : part == NamePart::Driver ? name.driver
+  const std::string& text = part == NamePart::Target   ? name.target.name()
+                            : part == NamePart::Driver ? name.driver.name()
                                                        : name.shape;
   const auto words = effect_words(part);
   const auto found = std::ranges::find_if(words, [&](const EffectWord& word) {

@@ -31,15 +31,15 @@ inline Diagnosis hand_made_diagnosis() {
       verbatim("The missing effect is: reversal EXX"),
       {FindingCode::DiagnosisMoreOneOf, {{"effects", std::vector<std::string>{"reversal EYY"}}}}};
   EffectFinding reversal = found_effect("reversal", "EXX", 4e-6);
-  reversal.name = {"reversal", "EXX", "dir_x", "step"};
+  reversal.name = EffectName::of_parts("reversal", "EXX", "dir_x", "step");
   EffectFinding other = found_effect("reversal", "EYY", 1e-6);
-  other.name = {"reversal", "EYY", "dir_y", "step"};
+  other.name = EffectName::of_parts("reversal", "EYY", "dir_y", "step");
   EffectFinding third = found_effect("reversal", "EZZ", 0.25e-6);
-  third.name = {"reversal", "EZZ", "dir_z", "step"};
+  third.name = EffectName::of_parts("reversal", "EZZ", "dir_z", "step");
   third.visible_fraction = 0.01;
   third.amplitudes[0].mdb = std::nan("");
   EffectFinding finer;
-  finer.name = {"resolution", "EYX", "x", "finer"};
+  finer.name = EffectName::of_parts("resolution", "EYX", "x", "finer");
   finer.label = "EYX finer";
   finer.resolution = true;
   finer.log10_p = -3.0;

@@ -84,7 +84,8 @@ inline std::vector<Family> families_of(const LinearModel& model, const std::stri
   std::vector<Family> chosen;
   for (Family& family : families(model)) {
     const EffectName name = family.name();
-    if (name.kind == kind && (target.empty() || name.target == target)) chosen.push_back(std::move(family));
+    if (name.kind == kind && (target.empty() || name.target.name() == target))
+      chosen.push_back(std::move(family));
   }
   return chosen;
 }

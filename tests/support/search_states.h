@@ -18,15 +18,19 @@ inline std::shared_ptr<const SearchSetting> setting_of(const LinearModel& model)
                                          std::vector<std::string>{}, 1);
 }
 
-/// The test of the family "kind:target:driver:shape"; an empty part fits any.
-inline const FamilyTest& test_of(const ModelState& tested, const EffectName& wanted) {
+/// Texts of a name; an empty part fits any.
+struct WantedName {
+  std::string kind, target, driver, shape;
+};
+
+inline const FamilyTest& test_of(const ModelState& tested, const WantedName& wanted) {
   const auto fits = [](const std::string& part, const std::string& own) {
     return part.empty() || part == own;
   };
   for (const FamilyTest& test : tested.tests().families) {
     const EffectName name = tested.setting().families[test.family].name();
-    if (fits(wanted.kind, name.kind) && fits(wanted.target, name.target) &&
-        fits(wanted.driver, name.driver) && fits(wanted.shape, name.shape))
+    if (fits(wanted.kind, name.kind) && fits(wanted.target, name.target.name()) &&
+        fits(wanted.driver, name.driver.name()) && fits(wanted.shape, name.shape))
       return test;
   }
   throw std::out_of_range(wanted.kind + ":" + wanted.target);

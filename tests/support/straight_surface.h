@@ -27,7 +27,7 @@ inline void add_straight_surface(FitResult& result, const EffectSpec& spec, std:
   }
   ParameterBlock block;
   block.kind = ParameterKind::Effect;
-  block.name = surface_name(*effect);
+  block.name = common_label(*effect);
   block.offset = result.layout.size;
   block.guess = Eigen::VectorXd::Zero(basis.size());
   block.prior_mean = block.prior_sigma = block.guess;

@@ -46,9 +46,7 @@ void resolution_columns(const LinearModel& model, ErrorSymbol symbol, std::size_
 
 std::string Family::label() const {
   if (resolution) return resolution->name() + " finer";
-  std::string label = effect->amplitudes().front().label;
-  if (effect->amplitudes().size() > 1) label = label.substr(0, label.rfind(' '));
-  return label;
+  return common_label(*effect);
 }
 
 bool Family::is_left_out() const { return effect && effect->name().kind == kLeftOut; }

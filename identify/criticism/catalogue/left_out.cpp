@@ -116,13 +116,14 @@ std::unique_ptr<Effect> function(const Campaign& campaign, ErrorSymbol symbol) {
   const int lowest = lowest_degree(campaign.machine, symbol);
   for (int degree = lowest; degree <= kDegrees; ++degree) {
     const std::string number = "P" + std::to_string(degree);
-    amplitudes.push_back({.label = words_of(symbol) + " " + number,
+    amplitudes.push_back({.label = part_label(words_of(symbol), number),
                           .target = {.kind = TargetKind::Motion, .symbol = symbol},
-                          .key = number + "_" + std::string(edge_unit(symbol.component))});
+                          .key = number + "_" + std::string(edge_unit(symbol.component)),
+                          .of = words_of(symbol),
+                          .part = number});
   }
   return std::make_unique<FormulaEffect>(
-      EffectName{kLeftOut, symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "function"},
-      std::move(amplitudes),
+      EffectName{kLeftOut, symbol, position_of(symbol.axis), "function"}, std::move(amplitudes),
       [position = OwnPosition(campaign, symbol.axis), lowest](
           const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
         const Eigen::Index most = kDegrees - lowest + 1;
@@ -135,9 +136,8 @@ std::unique_ptr<Effect> function(const Campaign& campaign, ErrorSymbol symbol) {
 
 std::unique_ptr<Effect> squareness(LocationSymbol location) {
   const SquarenessMotion motion = motion_of_squareness(location);
-  const std::string driver(1, lower_letter_of(location.axis));
   return std::make_unique<FormulaEffect>(
-      EffectName{kLeftOut, location.name(), driver, "squareness"},
+      EffectName{kLeftOut, location, position_of(location.axis), "squareness"},
       std::vector<EffectAmplitude>{{.label = words_of(location),
                                     .target = {.kind = TargetKind::Motion, .symbol = motion.symbol},
                                     .key = "amplitude_urad"}},
@@ -155,7 +155,7 @@ std::unique_ptr<Effect> axis_location(const Machine& machine, LocationSymbol loc
   const auto joint = std::ranges::find(machine.structure.joints, location.axis, &Joint::axis);
   const double sign = rotary_location_sign(joint->workpiece_side, location.axis, location.component);
   return std::make_unique<FormulaEffect>(
-      EffectName{kLeftOut, location.name(), std::string(1, lower_letter_of(location.axis)), "location"},
+      EffectName{kLeftOut, location, position_of(location.axis), "location"},
       std::vector<EffectAmplitude>{
           {.label = words_of(location),
            .target = {.kind = TargetKind::Motion, .symbol = {location.component, location.axis}},

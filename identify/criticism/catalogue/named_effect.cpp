@@ -35,7 +35,7 @@ EffectSpec named_effect(const std::string& option, const std::string& text, cons
   std::string names, all;
   for (const EffectSpec& spec : kind->candidates(campaign)) {
     const EffectName name = kind->make(spec, {})->name();
-    const std::string fields[] = {name.kind, name.target, name.driver, name.shape};
+    const std::string fields[] = {name.kind, name.target.name(), name.driver.name(), name.shape};
     all += (all.empty() ? "" : ", ") + full_name(name);
     bool fits = wanted.size() <= 4;
     for (std::size_t k = 1; fits && k < wanted.size(); ++k)

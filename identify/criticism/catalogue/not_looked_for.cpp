@@ -25,24 +25,24 @@ bool moves_along(const Campaign& campaign, AxisName axis) {
   return range.max > range.min;
 }
 
-/// "dir_x" of the axes that move and whose directions are known nowhere.
-std::set<std::string> unknown_directions(const Campaign& campaign) {
-  std::set<std::string> names;
+/// Of the axes that move and whose directions are known nowhere.
+std::set<Variable> unknown_directions(const Campaign& campaign) {
+  std::set<Variable> directions;
   for (const Axis& axis : campaign.machine.axes) {
     if (!moves_along(campaign, axis.name) || direction_is_known(campaign, axis.name)) continue;
-    names.insert(direction_of_approach(axis.name).name());
+    directions.insert(direction_of_approach(axis.name));
   }
-  return names;
+  return directions;
 }
 
 std::set<std::string> kinds_driven_by(const std::vector<Family>& families,
-                                      const std::set<std::string>& drivers) {
+                                      const std::set<Variable>& drivers) {
   std::set<std::string> kinds;
   for (const Family& family : families) {
     if (!family.effect) continue;
     const EffectName& name = family.effect->name();
-    const bool driven = std::ranges::any_of(
-        drivers, [&](const std::string& driver) { return name.driver.find(driver) != std::string::npos; });
+    const bool driven =
+        std::ranges::any_of(drivers, [&](const Variable& driver) { return name.driver.has(driver); });
     if (driven) kinds.insert(name.kind);
   }
   return kinds;
@@ -74,10 +74,11 @@ std::vector<std::string> list(const std::set<std::string>& names) { return {name
 
 std::vector<Finding> not_looked_for(const Campaign& campaign, const std::vector<Family>& families) {
   std::vector<Finding> findings;
-  const std::set<std::string> directions = unknown_directions(campaign);
+  const std::set<Variable> directions = unknown_directions(campaign);
   if (const auto kinds = kinds_driven_by(families, directions); !kinds.empty()) {
     findings.push_back(
-        {FindingCode::DirectionsUnrecorded, {{"columns", list(directions)}, {"kinds", list(kinds)}}});
+        {FindingCode::DirectionsUnrecorded,
+         {{"columns", names_of(std::vector(directions.begin(), directions.end()))}, {"kinds", list(kinds)}}});
   }
   const bool any_time =
       std::ranges::any_of(campaign.setups, [](const Setup& setup) { return !setup.readings.time.empty(); });

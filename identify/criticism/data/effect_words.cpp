@@ -114,10 +114,6 @@ std::span<const EffectWord> common_words(NamePart part) {
 
 }  // namespace
 
-std::string full_name(const EffectName& name) {
-  return fmt::format("{}:{}:{}:{}", name.kind, name.target, name.driver, name.shape);
-}
-
 std::span<const ModelChange> model_change_kinds() { return kModelChanges; }
 
 std::vector<MachineError> errors_given_back(const EffectSpec& spec) {
@@ -128,7 +124,7 @@ std::vector<MachineError> errors_given_back(const EffectSpec& spec) {
 }
 
 EffectName resolution_name(ErrorSymbol symbol) {
-  return {kResolution, symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "finer"};
+  return {kResolution, symbol, position_of(symbol.axis), "finer"};
 }
 
 std::vector<EffectWord> effect_words(NamePart part) {

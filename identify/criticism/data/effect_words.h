@@ -29,9 +29,6 @@ struct EffectWord {
   friend bool operator==(const EffectWord&, const EffectWord&) = default;
 };
 
-/// "kind:target:driver:shape"
-std::string full_name(const EffectName& name);
-
 /// Kinds that are changes of the model and no effects to add: an error given back, more knots.
 struct ModelChange {
   std::string_view kind;

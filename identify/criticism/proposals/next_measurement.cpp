@@ -133,7 +133,7 @@ class Proposer {
       const auto found = std::ranges::find_if(
           state_.families, [&](const Family& each) { return each.effect && each.name() == name; });
       if (found == state_.families.end()) {
-        throw InputError({}, fmt::format("{}:{} is part of the model already", name.kind, name.target),
+        throw InputError({}, fmt::format("{}:{} is part of the model already", name.kind, name.target.name()),
                          "ask about effects that the model does not have");
       }
       out.push_back(asked(static_cast<std::size_t>(found - state_.families.begin())));

@@ -191,27 +191,10 @@ Eigen::MatrixXd scan_waves(const ScanVariable& variable, int count) {
 }
 
 std::vector<Variable> scan_variables_of(const EffectName& name) {
-  std::vector<Variable> variables;
-  for (const std::string& text : {name.target, name.driver}) {
-    const auto variable = Variable::parse(text);
-    if (variable && (variable->kind == Kind::Tool || variable->kind == Kind::Station))
-      variables.push_back(*variable);
-  }
-  const std::vector<std::string> words = words_in(name.driver);
-  const std::string first = words.empty() ? "" : words.front();
-  if (first == "dir") {  // the sense of a circle in a plane
-    for (const char letter : name.target)
-      variables.push_back(direction_of_approach(*axis_from_letter(letter)));
-    if (words.back() == "feed") variables.push_back({Kind::Feed});
-  } else if (first == "run") {
-    variables.push_back({Kind::Run});
-  } else if (find_instrument(name.driver) != nullptr) {
-    variables.push_back({.kind = Kind::Instrument, .subject = name.driver});
-  } else if (first != "tool") {
-    for (const std::string& word : words) {
-      const auto variable = Variable::parse(word);
-      if (variable && is_scanned(variable->kind)) variables.push_back(*variable);
-    }
+  std::vector<Variable> variables = name.driver.where();
+  if (name.target.owner()) variables.push_back(*name.target.owner());
+  for (const Variable& variable : name.driver.variables()) {
+    if (is_scanned(variable.kind)) variables.push_back(variable);
   }
   return variables;
 }

@@ -49,7 +49,7 @@ bool any_order_differs(const ModelState& state, const std::vector<AddedEffect>& 
 bool is_held_in_few_terms(const ModelState& state, const Variable& variable) {
   return std::ranges::any_of(state.added(), [&](const AddedEffect& each) {
     const Family& family = state.family_of(each);
-    return !family.orders.empty() && family.name().driver == variable.name();
+    return !family.orders.empty() && family.name().driver.is(variable);
   });
 }
 

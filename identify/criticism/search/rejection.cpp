@@ -14,12 +14,6 @@
 namespace volcal {
 namespace {
 
-/// "time constant"
-std::string shape_word(const EffectShape& shape) {
-  const std::size_t colon = shape.label.rfind(": ");
-  return colon == std::string::npos ? shape.label : shape.label.substr(colon + 2);
-}
-
 Finding rejected(FindingCode code, const Family& family) { return {code, {{"effect", family.label()}}}; }
 
 bool acts_in_place_of(const Family& one, const Family& other) {
@@ -118,7 +112,7 @@ std::optional<Finding> Rejection::rejection_reason(std::size_t added) const {
   if (!rules().decide(SearchRule::ShapeBeyondScan, [&] { return lies_beyond_its_scan(added); }))
     return std::nullopt;
   Finding beyond = rejected(FindingCode::RejectedShapeBeyondScan, family);
-  beyond.data["shape"] = shape_word(family.effect->shapes().front());
+  beyond.data["shape"] = family.effect->shapes().front().word();
   return beyond;
 }
 

@@ -30,8 +30,8 @@ void add_mib(const AmplitudeFigure& figure, Json& json) {
 /// and all are listed.
 Json effect_json(const EffectFinding& effect) {
   Json json = {{"kind", effect.name.kind},
-               {"target", effect.name.target},
-               {"driver", effect.name.driver},
+               {"target", effect.name.target.name()},
+               {"driver", effect.name.driver.name()},
                {"shape", effect.name.shape},
                {"label", effect.label}};
   if (!effect.amplitudes.empty()) {
@@ -85,8 +85,8 @@ Json detectable_json(const std::vector<DetectableEffect>& effects) {
   Json json = Json::array();
   for (const DetectableEffect& effect : effects) {
     json.push_back({{"kind", effect.name.kind},
-                    {"target", effect.name.target},
-                    {"driver", effect.name.driver},
+                    {"target", effect.name.target.name()},
+                    {"driver", effect.name.driver.name()},
                     {"shape", effect.name.shape},
                     {"label", effect.label},
                     {"shape_value", effect.shape_text},
@@ -143,8 +143,8 @@ Json surface_json(const SurfaceFinding& surface) {
   Json formulas = Json::array();
   for (const FormulaFinding& formula : surface.formulas) formulas.push_back(formula_json(formula));
   return {{"kind", surface.name.kind},
-          {"target", surface.name.target},
-          {"driver", surface.name.driver},
+          {"target", surface.name.target.name()},
+          {"driver", surface.name.driver.name()},
           {"shape", surface.name.shape},
           {"label", surface.label},
           {"drivers", written_names(surface.drivers)},

@@ -37,7 +37,8 @@ double si_per_unit(std::string unit) {
 }
 
 EffectName name_from(const Json& json) {
-  return {text(json, "kind"), text(json, "target"), text(json, "driver"), text(json, "shape")};
+  return EffectName::of_parts(text(json, "kind"), text(json, "target"), text(json, "driver"),
+                              text(json, "shape"));
 }
 
 AmplitudeFigure amplitude_from(const Json& json) {
@@ -202,16 +203,10 @@ DetectableEffect detectable_from(const Json& json) {
   return effect;
 }
 
-/// kind:target:driver:shape
 EffectName name_from(const std::string& text) {
-  EffectName name;
-  std::size_t begin = 0;
-  for (std::string* part : {&name.kind, &name.target, &name.driver, &name.shape}) {
-    const std::size_t end = std::min(text.find(':', begin), text.size());
-    *part = text.substr(begin, end - begin);
-    begin = std::min(end + 1, text.size());
-  }
-  return name;
+  std::optional<EffectName> name = EffectName::parse(text);
+  if (!name) throw std::invalid_argument("\"" + printable(text) + "\" is not KIND:TARGET:DRIVER:SHAPE");
+  return *std::move(name);
 }
 
 std::vector<EffectName> names_from(const Json& json) {

@@ -120,7 +120,7 @@ EffectFinding reversal_of(const std::string& symbol) {
   EffectFinding effect;
   effect.spec = effect_spec("reversal", {{"symbol", symbol}});
   effect.label = "reversal " + symbol;
-  effect.name = {"reversal", symbol, "dir", "step"};
+  effect.name = EffectName::of_parts("reversal", symbol, "dir", "step");
   return effect;
 }
 

@@ -98,7 +98,7 @@ TEST(Diagnosis, AReversalIsNamedWithItsAmplitude) {
   EXPECT_EQ(to_string(found.diagnosis.verdict), "NAMED");
   ASSERT_EQ(found.diagnosis.effects.size(), 1U);
   const EffectFinding& effect = found.diagnosis.effects[0];
-  EXPECT_EQ(effect.name, (EffectName{"reversal", "EYY", "dir_y", "step"}));
+  EXPECT_EQ(effect.name, EffectName::of_parts("reversal", "EYY", "dir_y", "step"));
   const double truth = found.simulated.hidden.at(0).amplitude;
   EXPECT_NEAR(effect.amplitudes[0].value, truth, 3.0 * effect.amplitudes[0].u);
   EXPECT_LT(effect.amplitudes[0].u, 0.1 * std::abs(truth));

@@ -51,7 +51,7 @@ class ModelExtension : public ::testing::Test {
 TEST_F(ModelExtension, AddsAnEffectOnce) {
   const auto effect = extend(reversal_);
   ASSERT_NE(effect, nullptr);
-  EXPECT_EQ(effect->name().target, "EYY");
+  EXPECT_EQ(effect->name().target.name(), "EYY");
   ASSERT_EQ(model_.effects.size(), 1U);
   EXPECT_EQ(model_.effects.front().kind, "reversal");
   EffectSpec sized = reversal_;

@@ -18,7 +18,7 @@ using ::testing::IsEmpty;
 
 EffectFinding backlash() {
   EffectFinding finding;
-  finding.name = {"reversal", "EYY", "dir_y", "step"};
+  finding.name = EffectName::of_parts("reversal", "EYY", "dir_y", "step");
   finding.label = "EYY reversal";
   finding.amplitudes = {{"EYY reversal", 1.5e-6, 0.1e-6, 0.4e-6, "um", 1e-6}};
   return finding;

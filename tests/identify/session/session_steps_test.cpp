@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const EffectName kOfY{"reversal", "EYY", "dir_y", "step"};
+const EffectName kOfY = EffectName::of_parts("reversal", "EYY", "dir_y", "step");
 
 /// Two reversals hidden.
 class SessionSteps : public ::testing::Test {

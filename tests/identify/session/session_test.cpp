@@ -34,8 +34,8 @@ namespace {
 using testing_support::hiding;
 using testing_support::reversal;
 
-const EffectName kReversal{"reversal", "EYY", "dir_y", "step"};
-const EffectName kOther{"reversal", "EXX", "dir_x", "step"};
+const EffectName kReversal = EffectName::of_parts("reversal", "EYY", "dir_y", "step");
+const EffectName kOther = EffectName::of_parts("reversal", "EXX", "dir_x", "step");
 
 /// Two reversals hidden, of which the first moves the readings most.
 class SessionOfTwo : public ::testing::Test {

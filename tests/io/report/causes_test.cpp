@@ -97,9 +97,9 @@ TEST(CircleCauses, OfNoCircleNothing) {
 TEST(VolumeCauses, AFoundReversalIsRankedBesideTheErrorMotions) {
   const test::SyntheticFit fit = test::synthetic_fit();
   EffectFinding reversal = testing::found_effect("reversal", "EXX", 4e-6);
-  reversal.name = {"reversal", "EXX", "dir_x", "step"};
+  reversal.name = EffectName::of_parts("reversal", "EXX", "dir_x", "step");
   EffectFinding station = testing::found_effect("reversal", "EXX", 4e-6);
-  station.name = {"dead-path", "station P1", "time", "linear"};
+  station.name = EffectName::of_parts("dead-path", "station P1", "time", "linear");
   station.label = "dead path P1";
   station.amplitudes[0].label = station.label;
   station.spec = effect_spec("dead-path", {{"setup", "P1"}});

@@ -18,7 +18,7 @@ namespace {
 Diagnosis with_a_drawn_surface() {
   Diagnosis diagnosis = testing::hand_made_diagnosis();
   SurfaceFinding surface;
-  surface.name = {"empirical", "EAY", "y z", "surface"};
+  surface.name = EffectName::of_parts("empirical", "EAY", "y z", "surface");
   surface.label = "surface EAY by y z";
   surface.spec.kind = "empirical";
   surface.spec.options.set("target", std::string("EAY"));
@@ -126,7 +126,7 @@ TEST(SurfaceJson, TheRestAloneIsStillSeen) {
 TEST(SurfaceJson, WhatWasDrawnHasARank) {
   Diagnosis diagnosis = with_a_drawn_surface();
   diagnosis.ranking.push_back(diagnosis.effects.front());
-  diagnosis.ranking.back().name = {"dead-path", "readings", "time", "linear"};
+  diagnosis.ranking.back().name = EffectName::of_parts("dead-path", "readings", "time", "linear");
   const std::vector<EffectFinding> ranked = ranked_effects(diagnosis);
   const auto drawn = std::ranges::find(ranked, "EAY by y * z^2", &EffectFinding::label);
   ASSERT_NE(drawn, ranked.end());

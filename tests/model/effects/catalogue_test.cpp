@@ -211,7 +211,7 @@ TEST_F(Catalogue, AnAxisIsLateWhereCirclesMoveItInTwoPlanes) {
   const auto drivers_of = [&] {
     std::vector<std::string> names;
     for (const EffectSpec& spec : kind->candidates(campaign_))
-      names.push_back(kind->make(spec, "model.toml")->name().driver);
+      names.push_back(kind->make(spec, "model.toml")->name().driver.name());
     return names;
   };
   EXPECT_THAT(drivers_of(), ::testing::ElementsAre("dir_x feed", "dir_y feed", "dir_z feed"));
@@ -254,7 +254,7 @@ TEST_F(Catalogue, AServoMismatchIsLookedForInPlanesOfCircles) {
   auto& z = campaign_.setups[index("B1")].readings.position[index_of(AxisName::Z)];
   for (double& position : z) position *= 1e-3;
   ASSERT_EQ(kind->candidates(campaign_).size(), 1U);
-  EXPECT_EQ(kind->make(kind->candidates(campaign_)[0], "model.toml")->name().target, "XY");
+  EXPECT_EQ(kind->make(kind->candidates(campaign_)[0], "model.toml")->name().target.name(), "XY");
 }
 
 /// A beam of 1 mrad reads half a ppm too short; a path that runs backwards counts with its sign.
@@ -487,7 +487,8 @@ TEST_F(Catalogue, ADeadPathIsOfASetupOfAStationOrOfAllLasers) {
   std::vector<std::string> shared;
   for (const EffectSpec& each : find_effect("dead-path")->candidates(campaign_)) {
     const EffectName name = find_effect("dead-path")->make(each, "model.toml")->name();
-    if (!name.target.starts_with("readings of")) shared.push_back(name.target + " " + name.driver);
+    if (!name.target.name().starts_with("readings of"))
+      shared.push_back(name.target.name() + " " + name.driver.name());
   }
   EXPECT_THAT(shared, ::testing::ElementsAre("station P1 time", "station P1 T_air", "station P1 T_spindle",
                                              "readings time", "readings T_air", "readings T_spindle"));

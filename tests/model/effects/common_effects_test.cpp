@@ -49,7 +49,7 @@ TEST(CommonEffects, ReversalJumpsOnEveryAxisByItsOwnDirection) {
   ASSERT_EQ(effect->amplitudes().size(), 1U);
   EXPECT_EQ(effect->amplitudes()[0].label, "common reversal of EXX EYY EYX");
   EXPECT_EQ(effect->amplitudes()[0].key, "amplitude_um");
-  EXPECT_EQ(effect->name(), (EffectName{"common-reversal", "EXX EYY EYX", "dir_x dir_y", "step"}));
+  EXPECT_EQ(effect->name(), EffectName::of_parts("common-reversal", "EXX EYY EYX", "dir_x dir_y", "step"));
   Eigen::MatrixXd halves(2, 3);
   halves << 0.5, 0.5, 0.5, -0.5, 0.5, -0.5;
   EXPECT_EQ(effect->drivers(view, {}), halves);
@@ -107,10 +107,10 @@ TEST(CommonEffects, CandidatesAreTheAxesThatShowIt) {
   const auto expansions = find_effect("common-expansion")->candidates(campaign);
   ASSERT_EQ(expansions.size(), 1U);
   EXPECT_EQ(names_of_symbols(positioning_errors(axes_that_move(campaign))),
-            common_effect(expansions[0])->name().target);
+            common_effect(expansions[0])->name().target.name());
   const auto reversals = find_effect("common-reversal")->candidates(campaign);
   ASSERT_EQ(reversals.size(), 1U);
-  EXPECT_EQ(common_effect(reversals[0])->name().target, "EXX EZZ");
+  EXPECT_EQ(common_effect(reversals[0])->name().target.name(), "EXX EZZ");
 }
 
 TEST(CommonEffects, RefuseWhatIsNoSharedCause) {

@@ -146,7 +146,7 @@ TEST_F(Custom, ParametersOfTheShapeCanBeHeldOrEstimated) {
   EXPECT_EQ(effect->shapes()[1].sigma, 0.0);
   EXPECT_NEAR(effect->drivers(view("S2"), Eigen::Vector2d(600.0, 1.0))(0, 0), 1.0 - std::exp(-1000.0 / 600.0),
               1e-12);
-  EXPECT_EQ(effect->name().driver, "t");
+  EXPECT_EQ(effect->name().driver.name(), "t");
 }
 
 /// A value that is estimated moves with the fit, and its effect stays the same one.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "tests/support/effect_campaign.h"
 #include "volcal/model/description/errors.h"
@@ -66,6 +67,21 @@ TEST(DriverCheck, WhatStillChangesIsAccepted) {
         effect_spec("reversal", {{"symbol", "EXX"}}),
         effect_spec("thermal-drift", {{"symbol", "EAZ"}, {"temperature", "spindle"}})}) {
     EXPECT_NO_THROW(check_drivers_vary(still(), with(effect))) << effect.kind;
+  }
+}
+
+/// As words "T_front bearing" are no channel, as a variable it is.
+TEST(DriverCheck, AChannelMayHaveABlankInItsName) {
+  Campaign campaign = testing_support::effect_campaign();
+  for (auto& setup : campaign.setups)
+    setup.readings.temperature["front bearing"] = std::vector<double>(setup.readings.size(), 21.5);
+  const EffectSpec effect =
+      effect_spec("thermal-drift", {{"symbol", "EAZ"}, {"temperature", "front bearing"}});
+  try {
+    check_drivers_vary(campaign, with(effect));
+    ADD_FAILURE() << "a channel that never changes is accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.problem(), HasSubstr("T_front bearing_degC: the same in all readings"));
   }
 }
 

@@ -78,7 +78,7 @@ TEST_F(EffectContract, CandidatesHaveNamesUnitsAndKeys) {
     EXPECT_FALSE(effect->name().target.empty()) << spec.kind;
     EXPECT_FALSE(effect->name().driver.empty()) << spec.kind;
     EXPECT_FALSE(effect->name().shape.empty()) << spec.kind;
-    EXPECT_TRUE(names.insert(effect->name()).second) << spec.kind << " " << effect->name().target;
+    EXPECT_TRUE(names.insert(effect->name()).second) << spec.kind << " " << effect->name().target.name();
     ASSERT_FALSE(effect->amplitudes().empty()) << spec.kind;
     for (const EffectAmplitude& amplitude : effect->amplitudes()) {
       EXPECT_TRUE(labels.insert(amplitude.label).second) << amplitude.label << " twice";

@@ -76,7 +76,7 @@ class Empirical : public ::testing::Test {
 TEST_F(Empirical, IsTheFunctionOfItsDrivers) {
   const auto effect = effect_of(stated("EAY", "y T_spindle", {0.0, 15.0}, {500.0, 30.0}, {3, 2}));
   EXPECT_EQ(effect_label(*effect), "surface EAY by y T_spindle");
-  EXPECT_EQ(effect->name(), (EffectName{"empirical", "EAY", "y T_spindle", "surface"}));
+  EXPECT_EQ(effect->name(), EffectName::of_parts("empirical", "EAY", "y T_spindle", "surface"));
   const Readings& readings = campaign_.setups[1].readings;
   const Eigen::VectorXd values = straight(*effect, 1);
   for (std::size_t row = 0; row < readings.size(); ++row)

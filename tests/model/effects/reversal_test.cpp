@@ -48,7 +48,7 @@ TEST(Reversal, TargetsItsSymbolInItsUnit) {
   EXPECT_EQ(length->amplitudes()[0].label, "reversal EYY");
   EXPECT_EQ(length->amplitudes()[0].unit(), "um");
   EXPECT_EQ(length->amplitudes()[0].target.symbol, (ErrorSymbol{Component::Y, AxisName::Y}));
-  EXPECT_EQ(length->name(), (EffectName{"reversal", "EYY", "dir_y", "step"}));
+  EXPECT_EQ(length->name(), EffectName::of_parts("reversal", "EYY", "dir_y", "step"));
   EXPECT_EQ(made_reversal(reversal_of("ECX"))->amplitudes()[0].unit(), "urad");
 }
 

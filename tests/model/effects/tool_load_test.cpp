@@ -35,7 +35,7 @@ TEST(ToolLoad, GrowsWithTheLengthOfTheTool) {
   const MeasurementModel model(campaign, spec);
   const auto effect =
       find_effect("tool-load")->make(effect_spec("tool-load", {{"symbol", std::string("EBX")}}), {});
-  EXPECT_EQ(effect->name().driver, "tool_length");
+  EXPECT_EQ(effect->name().driver.name(), "tool_length");
   EXPECT_EQ(effect->amplitudes().front().key, "amplitude_urad_per_m");
   const double by_hand[] = {0.1, 0.2549510, 0.5};
   const auto views = setup_views(campaign, model.binding(), model.chain());

@@ -12,7 +12,7 @@ constexpr double kFold = 0.2;  // m
 std::unique_ptr<FormulaEffect> make_sample(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
   return std::make_unique<FormulaEffect>(
-      EffectName{"sample", symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "exponential"},
+      EffectName{"sample", symbol, position_of(symbol.axis), "exponential"},
       std::vector{motion_amplitude(table, "sample " + symbol.name(), symbol, "")},
       [symbol](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return (-positions_from_home(view, symbol.axis).array().abs() / kFold).exp().matrix();

@@ -58,7 +58,7 @@ Json effect_json(const Diagnosis& diagnosis, const EffectName& name, const std::
   const auto [role, finding] = place_of(diagnosis, name);
   return {{"label", label},
           {"kind", name.kind},
-          {"driver", name.driver},
+          {"driver", name.driver.name()},
           {"name", full_name(name)},
           {"role", role},
           {"can_be_asked", find_effect(name.kind) != nullptr},

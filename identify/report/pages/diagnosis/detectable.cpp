@@ -14,7 +14,7 @@ Json detectable_json(const std::vector<DetectableEffect>& effects, const std::st
     if (!effect.visible) ++not_visible;
     rows.push_back({{"label", effect.label},
                     {"kind", effect.name.kind},
-                    {"driver", effect.name.driver},
+                    {"driver", effect.name.driver.name()},
                     {"shape", effect.shape_text.empty() ? effect.name.shape : effect.shape_text},
                     {"mdb", rounded(effect.mdb / effect.si_per_unit, 3)},
                     {"unit", shown_unit(effect.unit)},

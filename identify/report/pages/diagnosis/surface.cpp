@@ -11,7 +11,7 @@ namespace {
 DrawnSurface drawn(const SurfaceFinding& surface) {
   SurfaceValues values;
   values.label = surface.label;
-  values.target = surface.name.target;
+  values.target = surface.name.target.name();
   values.factor = surface.spec.options.text("factor").value_or("");
   values.drivers = surface.drivers;
   values.unit = surface.unit;

@@ -9,21 +9,20 @@
 namespace volcal {
 namespace {
 
-std::string directions_of(const std::vector<ErrorSymbol>& symbols) {
-  std::string words;
+EffectDriver directions_of(const std::vector<ErrorSymbol>& symbols) {
+  std::vector<Variable> directions;
   std::set<AxisName> known;
   for (const ErrorSymbol symbol : symbols) {
-    if (!known.insert(symbol.axis).second) continue;
-    words += (words.empty() ? "" : " ") + direction_of_approach(symbol.axis).name();
+    if (known.insert(symbol.axis).second) directions.push_back(direction_of_approach(symbol.axis));
   }
-  return words;
+  return EffectDriver(directions);
 }
 
 std::unique_ptr<FormulaEffect> make_common_reversal(const EffectTable& table) {
   const std::vector<ErrorSymbol> symbols = shared_symbols(table);
   const std::string label = "common reversal of " + names_of_symbols(symbols);
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"common-reversal", names_of_symbols(symbols), directions_of(symbols), "step"},
+      EffectName{"common-reversal", TargetName(symbols), directions_of(symbols), "step"},
       std::vector{motion_amplitude(table, label, symbols.front(), "")},
       [symbols](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         Eigen::MatrixXd halves(static_cast<Eigen::Index>(view.rows()),

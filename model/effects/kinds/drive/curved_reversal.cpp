@@ -11,8 +11,8 @@ std::unique_ptr<FormulaEffect> make_curved_reversal(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
   const std::string label = reversal_label(symbol) + " along the travel, curved";
   return std::make_unique<FormulaEffect>(
-      EffectName{"curved-reversal", symbol.name(),
-                 written_list({direction_of_approach(symbol.axis), position_of(symbol.axis)}), "quadratic"},
+      EffectName{"curved-reversal", symbol,
+                 EffectDriver({direction_of_approach(symbol.axis), position_of(symbol.axis)}), "quadratic"},
       std::vector{motion_amplitude(table, label, symbol, "per_m2")},
       [axis = symbol.axis](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return 0.5 * directions(view, axis).array() * positions_from_home(view, axis).array().square();

@@ -88,10 +88,9 @@ std::unique_ptr<FormulaEffect> make_periodic(const EffectTable& table, const Per
   const std::string label = range.label + (" " + symbol.name());
   const std::string per = range.grows ? "per_m" : "";
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{range.kind, symbol.name(), std::string(1, lower_letter_of(symbol.axis)),
-                 range.grows ? "growing wave" : "periodic"},
-      std::vector{motion_amplitude(table, label + " cos", symbol, per, "cos"),
-                  motion_amplitude(table, label + " sin", symbol, per, "sin")},
+      EffectName{range.kind, symbol, position_of(symbol.axis), range.grows ? "growing wave" : "periodic"},
+      std::vector{motion_amplitude(table, label, symbol, per, "cos"),
+                  motion_amplitude(table, label, symbol, per, "sin")},
       [symbol, grows = range.grows](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
         const Eigen::ArrayXd position = positions_from_home(view, symbol.axis).array();
         Eigen::MatrixXd drivers = waves(position, shape[0]);

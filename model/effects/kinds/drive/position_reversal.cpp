@@ -26,8 +26,8 @@ std::unique_ptr<FormulaEffect> make_position_reversal(const EffectTable& table) 
   const ErrorSymbol symbol = table.symbol();
   const std::string label = reversal_label(symbol) + " along the travel";
   return std::make_unique<FormulaEffect>(
-      EffectName{"position-reversal", symbol.name(),
-                 written_list({direction_of_approach(symbol.axis), position_of(symbol.axis)}), "linear"},
+      EffectName{"position-reversal", symbol,
+                 EffectDriver({direction_of_approach(symbol.axis), position_of(symbol.axis)}), "linear"},
       std::vector{motion_amplitude(table, label, symbol, "per_m")},
       [symbol](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return 0.5 * directions(view, symbol.axis).cwiseProduct(positions_from_home(view, symbol.axis));

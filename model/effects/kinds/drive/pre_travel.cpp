@@ -27,8 +27,9 @@ Eigen::VectorXd fading_half(const SetupView& view, AxisName axis, double length)
 std::unique_ptr<FormulaEffect> make_pre_travel(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
   const std::string label = "pre-travel " + symbol.name();
+  const Variable approach = direction_of_approach(symbol.axis);
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"pre-travel", symbol.name(), direction_of_approach(symbol.axis).name() + " travel",
+      EffectName{"pre-travel", symbol, EffectDriver::called(approach.name() + " travel", {approach}),
                  "exp(-s/l)"},
       std::vector{motion_amplitude(table, label, symbol, "")},
       [symbol](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {

@@ -28,7 +28,7 @@ std::unique_ptr<FormulaEffect> make_reversal(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
   const std::string label = reversal_label(symbol);
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"reversal", symbol.name(), direction_of_approach(symbol.axis).name(), "step"},
+      EffectName{"reversal", symbol, direction_of_approach(symbol.axis), "step"},
       std::vector{motion_amplitude(table, label, symbol, "")},
       [symbol](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return 0.5 * directions(view, symbol.axis);

@@ -12,8 +12,8 @@ std::unique_ptr<FormulaEffect> make_thermal_reversal(const EffectTable& table) {
   const std::string channel = table.text("temperature", "add temperature = \"CHANNEL\"");
   const std::string label = reversal_label(symbol) + " by " + channel;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"thermal-reversal", symbol.name(),
-                 direction_of_approach(symbol.axis).name() + " " + temperature_of(channel).name(), "linear"},
+      EffectName{"thermal-reversal", symbol,
+                 EffectDriver({direction_of_approach(symbol.axis), temperature_of(channel)}), "linear"},
       std::vector{motion_amplitude(table, label, symbol, "per_K")},
       [axis = symbol.axis, channel](const SetupView& view,
                                     const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {

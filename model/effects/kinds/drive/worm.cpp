@@ -52,9 +52,9 @@ std::unique_ptr<FormulaEffect> make_worm_error(const EffectTable& table) {
   const ErrorSymbol symbol = rotary_symbol(table);
   const std::string label = "worm error " + symbol.name();
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"worm-error", symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "periodic"},
-      std::vector{motion_amplitude(table, label + " cos", symbol, "", "cos"),
-                  motion_amplitude(table, label + " sin", symbol, "", "sin")},
+      EffectName{"worm-error", symbol, position_of(symbol.axis), "periodic"},
+      std::vector{motion_amplitude(table, label, symbol, "", "cos"),
+                  motion_amplitude(table, label, symbol, "", "sin")},
       [symbol](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
         return wave(view, symbol.axis, shape[0]);
       },
@@ -103,10 +103,9 @@ std::unique_ptr<FormulaEffect> make_ring_eccentricity(const EffectTable& table) 
                "write EAA, EBB or ECC: an encoder acts on the angle of its axis");
   const std::string label = "ring eccentricity " + symbol.name();
   return std::make_unique<FormulaEffect>(
-      EffectName{"ring-eccentricity", symbol.name(), std::string(1, lower_letter_of(symbol.axis)),
-                 "periodic"},
-      std::vector{motion_amplitude(table, label + " cos", symbol, "", "cos"),
-                  motion_amplitude(table, label + " sin", symbol, "", "sin")},
+      EffectName{"ring-eccentricity", symbol, position_of(symbol.axis), "periodic"},
+      std::vector{motion_amplitude(table, label, symbol, "", "cos"),
+                  motion_amplitude(table, label, symbol, "", "sin")},
       [symbol](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return wave(view, symbol.axis, kFullTurn);
       },

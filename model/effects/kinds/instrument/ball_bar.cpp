@@ -29,8 +29,10 @@ void check_circles(const Campaign& campaign, const SourcePlace& place) {
 
 std::unique_ptr<FormulaEffect> make_ball_bar_length(const EffectTable& table) {
   const std::string label = "ball-bar length";
+  const Variable bar{.kind = Variable::Kind::Instrument, .subject = instrument_with_bar()};
   return std::make_unique<FormulaEffect>(
-      EffectName{"ball-bar-length", "readings", instrument_with_bar(), "step"},
+      EffectName{"ball-bar-length", TargetName::of_readings(), EffectDriver::called(bar.subject, {}, {bar}),
+                 "step"},
       std::vector{reading_amplitude(table, label, "amplitude_um")},
       [](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return constant(view, has_bar(view.setup) ? 1.0 : 0.0);
@@ -132,6 +134,15 @@ Eigen::VectorXd twice_per_turn(const SetupView& view, AxisName first, AxisName s
   return driver;
 }
 
+/// By what the directions of both axes say together, not by each.
+EffectDriver sense_of_circle(AxisName first, AxisName second, bool feed) {
+  std::vector<Variable> variables;
+  if (feed) variables.push_back({Variable::Kind::Feed});
+  return EffectDriver::called(
+      feed ? "dir feed" : "dir", variables,
+      {direction_of_approach(std::min(first, second)), direction_of_approach(std::max(first, second))});
+}
+
 /// A lag of one axis behind the other makes an ellipse at 45 degrees that turns with the sense of the circle;
 /// its time constant less that of the other, dT, changes the radius by 1/2 v dT sin 2 phi.
 std::unique_ptr<FormulaEffect> make_servo_mismatch(const EffectTable& table) {
@@ -142,7 +153,8 @@ std::unique_ptr<FormulaEffect> make_servo_mismatch(const EffectTable& table) {
   const std::string label = "servo mismatch " + plane + (feed ? " by feed" : "");
   if (first == second) table.fail("its two axes are the same", "name the two axes of the circle's plane");
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"servo-mismatch", plane, feed ? "dir feed" : "dir", "sin(2 phi)"},
+      EffectName{"servo-mismatch", TargetName::called(plane), sense_of_circle(first, second, feed),
+                 "sin(2 phi)"},
       std::vector{reading_amplitude(table, label, feed ? "amplitude_ms" : "amplitude_um")},
       [first, second, feed](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const Eigen::VectorXd driver = twice_per_turn(view, first, second);
@@ -194,9 +206,10 @@ std::unique_ptr<FormulaEffect> make_following_error(const EffectTable& table) {
   const bool feed = by_feed(table);
   const ErrorSymbol symbol{positioning_component(axis), axis};
   const std::string label = std::string("following error ") + letter_of(axis) + (feed ? " by feed" : "");
-  const std::string direction = direction_of_approach(axis).name();
+  std::vector<Variable> driver{direction_of_approach(axis)};
+  if (feed) driver.push_back({Variable::Kind::Feed});
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"following-error", symbol.name(), feed ? direction + " feed" : direction, "cos(phi)"},
+      EffectName{"following-error", symbol, EffectDriver(driver), "cos(phi)"},
       std::vector{EffectAmplitude{.label = label,
                                   .target = {TargetKind::Motion, symbol, 0},
                                   .key = feed ? "amplitude_ms" : "amplitude_um",

@@ -15,7 +15,8 @@ bool is_interferometer(const Setup& setup) {
 std::unique_ptr<FormulaEffect> make_beam_misalignment(const EffectTable& table) {
   const std::string setup = table.text("setup", "add setup = \"NAME\"");
   return std::make_unique<FormulaEffect>(
-      EffectName{"beam-misalignment", "readings of " + setup, "length", "linear"},
+      EffectName{"beam-misalignment", TargetName::of_readings(setup), Variable{Variable::Kind::Length},
+                 "linear"},
       std::vector{reading_amplitude(table, "beam of " + setup, "amplitude_ppm")},
       [setup](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         if (view.setup.name != setup) return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(view.rows()));

@@ -26,9 +26,8 @@ struct DeadPathPlace {
     if (!setup.empty()) return each.name == setup;
     return measures_lengths(each) && (station.empty() || station_of(each) == station);
   }
-  std::string target() const {
-    if (!setup.empty()) return "readings of " + setup;
-    return station.empty() ? "readings" : "station " + station;
+  TargetName target() const {
+    return station.empty() ? TargetName::of_readings(setup) : TargetName::of_station(station);
   }
   std::string label() const {
     if (!setup.empty()) return "dead path of " + setup;
@@ -53,7 +52,7 @@ std::unique_ptr<FormulaEffect> make_dead_path(const EffectTable& table) {
   const std::string channel = table.spec.options.text("temperature").value_or("");
   const std::string label = where.label() + (channel.empty() ? " by time" : " by " + channel);
   return std::make_unique<FormulaEffect>(
-      EffectName{"dead-path", where.target(), temperature_or_time(channel).name(), "linear"},
+      EffectName{"dead-path", where.target(), temperature_or_time(channel), "linear"},
       std::vector{
           reading_amplitude(table, label, channel.empty() ? "amplitude_um_per_h" : "amplitude_um_per_K")},
       [where, channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {

@@ -41,10 +41,10 @@ std::unique_ptr<FormulaEffect> make_encoder_eccentricity(const EffectTable& tabl
   const StationEncoder at{station, encoder, channel_of_encoder(table, encoder)};
   const std::string label = encoder + " encoder" + (station.empty() ? " of all trackers" : " at " + station);
   return std::make_unique<FormulaEffect>(
-      EffectName{"encoder-eccentricity", station.empty() ? "stations" : "station " + station, encoder,
+      EffectName{"encoder-eccentricity", TargetName::of_station(station), EffectDriver::parse(encoder),
                  "periodic"},
-      std::vector{reading_amplitude(table, label + " cos", "cos_urad", at.channel),
-                  reading_amplitude(table, label + " sin", "sin_urad", at.channel)},
+      std::vector{reading_amplitude(table, label, "cos_urad", at.channel, "cos"),
+                  reading_amplitude(table, label, "sin_urad", at.channel, "sin")},
       [at](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const auto rows = static_cast<Eigen::Index>(view.rows());
         if (!at.reads(view.setup)) return Eigen::MatrixXd::Zero(rows, 2);

@@ -22,7 +22,9 @@ std::unique_ptr<FormulaEffect> make_length_scale(const EffectTable& table) {
   const std::string station = table.spec.options.text("station").value_or("");
   const std::string label = station.empty() ? "length scale of all lasers" : "length scale at " + station;
   return std::make_unique<FormulaEffect>(
-      EffectName{"length-scale", station.empty() ? "readings" : "station " + station, "length", "linear"},
+      EffectName{"length-scale",
+                 station.empty() ? TargetName::of_readings() : TargetName::of_station(station),
+                 Variable{Variable::Kind::Length}, "linear"},
       std::vector{reading_amplitude(table, label, "amplitude_ppm")},
       [station](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const bool acts =
@@ -57,7 +59,7 @@ std::unique_ptr<FormulaEffect> make_station_drift(const EffectTable& table) {
   const std::string station = table.spec.options.text("station").value_or("");
   const std::string label = station.empty() ? "drift of all stations" : "drift of station " + station;
   return std::make_unique<FormulaEffect>(
-      EffectName{"station-drift", station.empty() ? "stations" : "station " + station, "time", "linear"},
+      EffectName{"station-drift", TargetName::of_station(station), Variable{Variable::Kind::Time}, "linear"},
       vector_amplitudes(table, label, TargetKind::Station, "um_per_h"),
       [station](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const std::string own = station_of(view.setup);
@@ -108,7 +110,7 @@ std::unique_ptr<FormulaEffect> make_station_event(const EffectTable& table) {
   const std::string station = table.text("station", "add station = \"NAME\"");
   const std::string label = "event at station " + station;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"station-event", "station " + station, "time", "step"},
+      EffectName{"station-event", TargetName::of_station(station), Variable{Variable::Kind::Time}, "step"},
       vector_amplitudes(table, label, TargetKind::Station, "um"),
       [station](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
         if (station_of(view.setup) != station) return constant(view, 0.0).replicate(1, 3);
@@ -146,7 +148,7 @@ std::unique_ptr<FormulaEffect> make_tool_offset(const EffectTable& table) {
   const std::string tool = table.text("tool", "add tool = \"NAME\"");
   const std::string label = "offset of tool " + tool;
   return std::make_unique<FormulaEffect>(
-      EffectName{"tool-offset", "tool " + tool, "tool", "step"},
+      EffectName{"tool-offset", TargetName::of_tool(tool), EffectDriver::called("tool", {}), "step"},
       vector_amplitudes(table, label, TargetKind::ToolOffset, "um"),
       [tool](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const bool carried = view.campaign.machine.tools[view.setup.tool].name == tool;

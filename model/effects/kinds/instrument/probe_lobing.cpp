@@ -69,9 +69,10 @@ std::unique_ptr<FormulaEffect> make_probe_lobing(const EffectTable& table) {
   const int lobes = lobes_in(table);
   const std::string label = "probe lobing, " + std::to_string(lobes) + " lobes";
   return std::make_unique<FormulaEffect>(
-      EffectName{"probe-lobing", "readings", "normal", std::to_string(lobes) + " lobes"},
-      std::vector{reading_amplitude(table, label + " cos", "cos_um"),
-                  reading_amplitude(table, label + " sin", "sin_um")},
+      EffectName{"probe-lobing", TargetName::of_readings(), EffectDriver::called("normal", {}),
+                 std::to_string(lobes) + " lobes"},
+      std::vector{reading_amplitude(table, label, "cos_um", 0, "cos"),
+                  reading_amplitude(table, label, "sin_um", 0, "sin")},
       [lobes](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return lobes_of(view, lobes);
       },

@@ -24,10 +24,10 @@ std::unique_ptr<FormulaEffect> make_run_offset(const EffectTable& table) {
   if (!number) table.fail("it names no run", "add run = 2");
   if (*number != std::round(*number)) table.fail("its run is not a whole number", "add run = 2");
   const auto run = static_cast<std::int32_t>(*number);
-  const std::string driver = "run " + std::to_string(run);
-  const std::string label = driver + " of " + setup;
+  const auto driver = EffectDriver::called("run " + std::to_string(run), {}, {{Variable::Kind::Run}});
+  const std::string label = driver.name() + " of " + setup;
   return std::make_unique<FormulaEffect>(
-      EffectName{"run-offset", "readings of " + setup, driver, "step"},
+      EffectName{"run-offset", TargetName::of_readings(setup), driver, "step"},
       std::vector{reading_amplitude(table, label, "amplitude_um")},
       [setup, run](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         Eigen::VectorXd shifted = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(view.rows()));

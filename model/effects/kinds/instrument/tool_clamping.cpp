@@ -13,7 +13,7 @@ std::unique_ptr<FormulaEffect> make_tool_clamping(const EffectTable& table) {
   const std::string setup = table.text("setup", "add setup = \"NAME\"");
   const std::string label = "clamping in " + setup;
   return std::make_unique<FormulaEffect>(
-      EffectName{"tool-clamping", label, "setup", "step"},
+      EffectName{"tool-clamping", TargetName::called(label), EffectDriver::called("setup", {}), "step"},
       vector_amplitudes(table, label, TargetKind::ToolOffset, "um"),
       [setup](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(view.rows()), 3,

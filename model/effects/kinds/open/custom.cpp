@@ -172,7 +172,7 @@ std::unique_ptr<FormulaEffect> make_custom(const EffectTable& table) {
   const std::string text = text_with_held(formula, table);
   const std::string label = target + " by " + text;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{kCustom, target, written_list(formula.variables()), text},
+      EffectName{kCustom, formula.target().name(), EffectDriver::written(formula.variables()), text},
       std::vector<EffectAmplitude>{{.label = label,
                                     .target = formula.target().target(),
                                     .key = formula.target().amplitude_key("amplitude"),

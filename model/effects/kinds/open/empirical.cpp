@@ -79,13 +79,15 @@ struct Statement {
 
   std::string name() const {
     std::string text = drivers.size() == 1 ? "curve " : "surface ";
-    return text + target_text() + " by " + driver_text();
+    return text + target_name().name() + " by " + driver().name();
   }
-  std::string target_text() const {
-    return target.text + (owner.kind == Owner::Kind::All ? "" : " of " + owner.name);
+  TargetName target_name() const {
+    return owner.kind == Owner::Kind::All ? target.name() : target.name().within(owner.name);
   }
-  std::string driver_text() const {
-    return (factors.empty() ? "" : written_list(factors) + " ") + written_list(drivers);
+  EffectDriver driver() const {
+    std::vector<Variable> all = factors;
+    all.insert(all.end(), drivers.begin(), drivers.end());
+    return EffectDriver::written(all);
   }
 
   bool acts_on(const Campaign& campaign, const Setup& setup) const {
@@ -162,7 +164,7 @@ struct Statement {
 class EmpiricalEffect final : public Effect {
  public:
   explicit EmpiricalEffect(const EffectTable& table) : stated_(table), basis_(stated_.sides) {
-    name_ = {kEmpirical, stated_.target_text(), stated_.driver_text(),
+    name_ = {kEmpirical, stated_.target_name(), stated_.driver(),
              stated_.drivers.size() == 1 ? "curve" : "surface"};
     const std::vector<double> known =
         table.spec.options.numbers("coefficients").value_or(std::vector<double>{});
@@ -172,11 +174,14 @@ class EmpiricalEffect final : public Effect {
                  "leave them out to have them identified");
     }
     for (std::size_t k = 0; k < size; ++k) {
-      amplitudes_.push_back({.label = stated_.name() + " " + std::to_string(k + 1),
+      const std::string number = std::to_string(k + 1);
+      amplitudes_.push_back({.label = part_label(stated_.name(), number),
                              .target = stated_.target.target(),
                              .key = stated_.target.amplitude_key("coefficients"),
                              .guess = known.empty() ? 0.0 : known[k],
-                             .element = static_cast<int>(k)});
+                             .element = static_cast<int>(k),
+                             .of = stated_.name(),
+                             .part = number});
     }
   }
 

@@ -58,7 +58,7 @@ std::unique_ptr<FormulaEffect> make_coupling(const EffectTable& table) {
   const std::string label =
       symbol.name() + " by " + driver + (power.exponent > 1 ? "^" + std::to_string(power.exponent) : "");
   return std::make_unique<FormulaEffect>(
-      EffectName{"axis-coupling", symbol.name(), driver, power.shape},
+      EffectName{"axis-coupling", symbol, position_of(axis), power.shape},
       std::vector{motion_amplitude(table, label, symbol, power.per)},
       [axis, power](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return positions_from_home(view, axis).array().pow(power.exponent);

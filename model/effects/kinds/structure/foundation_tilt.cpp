@@ -36,7 +36,7 @@ std::unique_ptr<FormulaEffect> make_foundation_tilt(const EffectTable& table) {
   const EffectTarget target{
       .kind = TargetKind::Floor, .symbol = {}, .component = static_cast<int>(direction)};
   return std::make_unique<FormulaEffect>(
-      EffectName{"foundation-tilt", "machine about " + about, driver, shape},
+      EffectName{"foundation-tilt", TargetName::called("machine about " + about), position_of(axis), shape},
       std::vector<EffectAmplitude>{{.label = label,
                                     .target = target,
                                     .key = quadratic ? "amplitude_urad_per_m2" : "amplitude_urad_per_m",

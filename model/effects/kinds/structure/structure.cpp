@@ -16,11 +16,10 @@ std::unique_ptr<FormulaEffect> make_product_coupling(const EffectTable& table) {
   const AxisName second = table.axis("second_axis");
   if (first == second)
     table.fail("its two axes are the same", "use axis-coupling with shape = \"quadratic\"");
-  const std::string driver = {lower_letter_of(std::min(first, second)), ' ',
-                              lower_letter_of(std::max(first, second))};
-  const std::string label = symbol.name() + " by " + driver;
+  const EffectDriver driver({position_of(std::min(first, second)), position_of(std::max(first, second))});
+  const std::string label = symbol.name() + " by " + driver.name();
   return std::make_unique<FormulaEffect>(
-      EffectName{"product-coupling", symbol.name(), driver, "product"},
+      EffectName{"product-coupling", symbol, driver, "product"},
       std::vector{motion_amplitude(table, label, symbol, "per_m2")},
       [first, second](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return positions_from_home(view, first).cwiseProduct(positions_from_home(view, second));
@@ -58,7 +57,7 @@ std::unique_ptr<FormulaEffect> make_load_by_length(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
   const std::string label = symbol.name() + " by the tool's length";
   return std::make_unique<FormulaEffect>(
-      EffectName{"tool-load", symbol.name(), "tool_length", "linear"},
+      EffectName{"tool-load", symbol, Variable{Variable::Kind::ToolLength}, "linear"},
       std::vector{motion_amplitude(table, label, symbol, "per_m")},
       [](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return constant(view, view.campaign.machine.tools[view.setup.tool].offset.norm());
@@ -74,7 +73,7 @@ std::unique_ptr<FormulaEffect> make_tool_load(const EffectTable& table) {
   const std::string tool = table.text("tool", "add tool = \"NAME\"");
   const std::string label = symbol.name() + " by tool " + tool;
   return std::make_unique<FormulaEffect>(
-      EffectName{"tool-load", symbol.name(), "tool " + tool, "step"},
+      EffectName{"tool-load", symbol, Variable{.kind = Variable::Kind::Tool, .subject = tool}, "step"},
       std::vector{motion_amplitude(table, label, symbol, "")},
       [tool](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const bool carried = view.campaign.machine.tools[view.setup.tool].name == tool;

@@ -53,13 +53,12 @@ struct TiltTable {
       check_axis(campaign, axis, label, place);
     };
   }
-  std::string driver() const { return std::string(1, lower_letter_of(axis)); }
 };
 
 std::unique_ptr<FormulaEffect> make_tilt_load(const EffectTable& table) {
   const TiltTable own(table);
   return std::make_unique<FormulaEffect>(
-      EffectName{"tilt-load", own.symbol.name(), own.driver(), own.shape},
+      EffectName{"tilt-load", own.symbol, position_of(own.axis), own.shape},
       std::vector{motion_amplitude(table, own.label, own.symbol, "")},
       [own](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return gravity(view, own.axis, own.shape);
@@ -73,9 +72,9 @@ std::unique_ptr<FormulaEffect> make_cradle_coupling(const EffectTable& table) {
     table.fail(own.symbol.name() + " is of a linear axis",
                "use tilt-load, or name a motion of a rotary axis");
   return std::make_unique<FormulaEffect>(
-      EffectName{"cradle-coupling", own.symbol.name(), own.driver(), own.shape},
-      std::vector{motion_amplitude(table, own.label + " cos", own.symbol, "", "cos"),
-                  motion_amplitude(table, own.label + " sin", own.symbol, "", "sin")},
+      EffectName{"cradle-coupling", own.symbol, position_of(own.axis), own.shape},
+      std::vector{motion_amplitude(table, own.label, own.symbol, "", "cos"),
+                  motion_amplitude(table, own.label, own.symbol, "", "sin")},
       [own](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const Eigen::ArrayXd turned = positions_from_home(view, own.symbol.axis).array();
         const Eigen::ArrayXd load = gravity(view, own.axis, own.shape);

@@ -30,13 +30,12 @@ std::string product_text(const Factors& factors) {
   return text;
 }
 
-std::string driver_text(const Factors& factors) {
-  std::string text;
+EffectDriver driver_of(const Factors& factors) {
+  std::vector<Variable> positions;
   for (std::size_t i = 0; i < factors.size(); ++i) {
-    if (i > 0 && factors[i] == factors[i - 1]) continue;
-    text += (text.empty() ? "" : " ") + std::string(1, lower_letter_of(factors[i]));
+    if (i == 0 || factors[i] != factors[i - 1]) positions.push_back(position_of(factors[i]));
   }
-  return text;
+  return EffectDriver(positions);
 }
 
 Factors factors_of(const EffectTable& table) {
@@ -66,7 +65,7 @@ std::unique_ptr<FormulaEffect> make_triple_coupling(const EffectTable& table) {
   const Factors factors = factors_of(table);
   const std::string label = symbol.name() + " by " + product_text(factors);
   return std::make_unique<FormulaEffect>(
-      EffectName{"triple-coupling", symbol.name(), driver_text(factors), shape_of(factors)},
+      EffectName{"triple-coupling", symbol, driver_of(factors), shape_of(factors)},
       std::vector{motion_amplitude(table, label, symbol, "per_m3")},
       [factors](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         Eigen::VectorXd product = positions_from_home(view, factors[0]);

@@ -16,7 +16,7 @@ std::unique_ptr<FormulaEffect> make_common_expansion(const EffectTable& table) {
                             .key = "amplitude_um_per_m_K",
                             .guess = table.number("amplitude", 0.0)};
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"common-expansion", names_of_symbols(symbols), temperature_of(channel).name(), "linear"},
+      EffectName{"common-expansion", TargetName(symbols), temperature_of(channel), "linear"},
       std::vector{std::move(amplitude)},
       [axes, channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const Eigen::VectorXd excess = temperature_excess(view, channel);

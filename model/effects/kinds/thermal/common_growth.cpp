@@ -16,10 +16,10 @@ std::unique_ptr<FormulaEffect> make_common_growth(const EffectTable& table) {
   const std::vector<AxisName> axes = shared_axes(table);
   const std::vector<ErrorSymbol> symbols = positioning_errors(axes);
   const std::string label = "common growth of " + names_of_axes(axes);
-  std::string driver = "time";
-  for (const AxisName axis : axes) driver += std::string(" ") + lower_letter_of(axis);
+  std::vector<Variable> driver{{Variable::Kind::Time}};
+  for (const AxisName axis : axes) driver.push_back(position_of(axis));
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"common-growth", names_of_symbols(symbols), driver, "1-exp(-t/tau)"},
+      EffectName{"common-growth", TargetName(symbols), EffectDriver(driver), "1-exp(-t/tau)"},
       std::vector{motion_amplitude(table, label, symbols.front(), "per_m")},
       [axes](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
         const double start = clock_start(view);

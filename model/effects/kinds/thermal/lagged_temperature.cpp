@@ -16,7 +16,7 @@ constexpr int kLags = 8;
 
 ChannelHistory lag_of(const EffectTable& table) {
   const std::string channel = table.spec.options.text("temperature").value_or("");
-  return {"late by " + channel, temperature_of(channel).name(), "lag", lagged_excess};
+  return {"late by " + channel, temperature_of(channel), "lag", lagged_excess};
 }
 
 std::vector<Eigen::VectorXd> lags() {

@@ -15,7 +15,9 @@ Eigen::VectorXd ahead_of_core(const SetupView& view, const std::string& channel,
 
 ChannelHistory rate_of(const EffectTable& table) {
   const std::string channel = table.spec.options.text("temperature").value_or("");
-  return {"by the rate of " + channel, "rate of T_" + channel, "linear", ahead_of_core};
+  const Variable temperature = temperature_of(channel);
+  return {"by the rate of " + channel, EffectDriver::called("rate of " + temperature.name(), {temperature}),
+          "linear", ahead_of_core};
 }
 
 std::unique_ptr<FormulaEffect> with_core(const EffectTable& table, std::unique_ptr<FormulaEffect> effect,

@@ -35,8 +35,8 @@ std::unique_ptr<FormulaEffect> make_scale_expansion(const EffectTable& table) {
   const std::string channel = table.text("temperature", "add temperature = \"CHANNEL\"");
   const std::string label = "expansion " + linear_axis_text(axis) + " by " + channel;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"scale-expansion", ErrorSymbol{positioning_component(axis), axis}.name(),
-                 temperature_of(channel).name(), "linear"},
+      EffectName{"scale-expansion", ErrorSymbol{positioning_component(axis), axis}, temperature_of(channel),
+                 "linear"},
       std::vector<EffectAmplitude>{
           {.label = label,
            .target = {.kind = TargetKind::Motion, .symbol = {positioning_component(axis), axis}},
@@ -69,7 +69,7 @@ std::unique_ptr<FormulaEffect> make_thermal_drift(const EffectTable& table) {
   const std::string channel = table.text("temperature", "add temperature = \"CHANNEL\"");
   const std::string label = symbol.name() + " by " + channel;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"thermal-drift", symbol.name(), temperature_of(channel).name(), "linear"},
+      EffectName{"thermal-drift", symbol, temperature_of(channel), "linear"},
       std::vector{motion_amplitude(table, label, symbol, "per_K")},
       [channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return temperature_excess(view, channel);
@@ -96,7 +96,7 @@ std::vector<EffectSpec> thermal_drifts(const Campaign& campaign) {
 std::unique_ptr<FormulaEffect> make_spindle_growth(const EffectTable& table) {
   const std::string label = "spindle growth";
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"spindle-growth", "tool", "time", "1-exp(-t/tau)"},
+      EffectName{"spindle-growth", TargetName::of_tool(), Variable{Variable::Kind::Time}, "1-exp(-t/tau)"},
       vector_amplitudes(table, label, TargetKind::ToolOffset, "um"),
       [](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
         return growth(view, shape[0]).matrix().replicate(1, 3);
@@ -116,7 +116,7 @@ std::unique_ptr<FormulaEffect> make_tool_expansion(const EffectTable& table) {
   const std::string channel = table.text("temperature", "add temperature = \"CHANNEL\"");
   const std::string label = "tool by " + channel;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"tool-expansion", "tool", temperature_of(channel).name(), "linear"},
+      EffectName{"tool-expansion", TargetName::of_tool(), temperature_of(channel), "linear"},
       vector_amplitudes(table, label, TargetKind::ToolOffset, "um_per_K"),
       [channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return temperature_excess(view, channel).replicate(1, 3);
@@ -141,7 +141,7 @@ std::unique_ptr<FormulaEffect> make_screw_heating(const EffectTable& table) {
   const ErrorSymbol symbol{positioning_component(axis), axis};
   const std::string label = "screw heating " + linear_axis_text(axis);
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"screw-heating", symbol.name(), std::string("time ") + lower_letter_of(axis),
+      EffectName{"screw-heating", symbol, EffectDriver({{Variable::Kind::Time}, position_of(axis)}),
                  "1-exp(-t/tau)"},
       std::vector{motion_amplitude(table, label, symbol, "per_m")},
       [axis](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
@@ -177,7 +177,7 @@ std::unique_ptr<FormulaEffect> make_squareness_drift(const EffectTable& table) {
   const std::string channel = table.spec.options.text("temperature").value_or("");
   const std::string label = "drift of " + name + (channel.empty() ? "" : " by " + channel);
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"squareness-drift", name, temperature_or_time(channel).name(), "linear"},
+      EffectName{"squareness-drift", *location, temperature_or_time(channel), "linear"},
       std::vector<EffectAmplitude>{{.label = label,
                                     .target = {.kind = TargetKind::Motion, .symbol = motion.symbol},
                                     .key = channel.empty() ? "amplitude_urad_per_h" : "amplitude_urad_per_K",

@@ -42,7 +42,7 @@ ModelSpec without(std::initializer_list<const char*> symbols) {
 std::set<std::string> targets(const ModelSpec& model) {
   const MeasurementModel bound(campaign_of_tracking(), resolve_knots(model, campaign_of_tracking()));
   std::set<std::string> names;
-  for (const LeftOutError& error : left_out_errors(bound)) names.insert(error.effect->name().target);
+  for (const LeftOutError& error : left_out_errors(bound)) names.insert(error.effect->name().target.name());
   return names;
 }
 
@@ -59,7 +59,7 @@ TEST(LeftOut, IsNamedAndGivenBack) {
   const Diagnosis diagnosis = diagnose(campaign_of_tracking(), result, DiagnoseOptions{});
   ASSERT_FALSE(diagnosis.effects.empty());
   const EffectFinding& found = diagnosis.effects.front();
-  EXPECT_EQ(found.name, (EffectName{"left-out", "EBX", "x", "function"}));
+  EXPECT_EQ(found.name, EffectName::of_parts("left-out", "EBX", "x", "function"));
   EXPECT_LT(found.log10_p, -20.0);
   EXPECT_EQ(names_of(errors_given_back(found.spec)), (std::vector<std::string>{"EBX"}));
   ModelSpec extended = model;
@@ -93,7 +93,7 @@ sim::SimulatedCampaign campaign_of_few() {
 
 std::set<std::string> targets_of(const std::vector<EffectFinding>& findings) {
   std::set<std::string> names;
-  for (const EffectFinding& found : findings) names.insert(found.name.target);
+  for (const EffectFinding& found : findings) names.insert(found.name.target.name());
   return names;
 }
 

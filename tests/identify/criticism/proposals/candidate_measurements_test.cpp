@@ -282,8 +282,8 @@ class ProposedForASet : public Planner {
  private:
   EffectFinding found(const std::string& kind, double size) const {
     const auto family = std::ranges::find_if(families_, [&](const Family& each) {
-      return each.effect && each.name().kind == kind && each.name().driver == "time" &&
-             each.name().target.find("P1") != std::string::npos;
+      return each.effect && each.name().kind == kind && each.name().driver.name() == "time" &&
+             each.name().target.name().find("P1") != std::string::npos;
     });
     EXPECT_NE(family, families_.end());
     EffectFinding finding;

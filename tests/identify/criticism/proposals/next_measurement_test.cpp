@@ -22,10 +22,10 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const EffectName kLengthScale{"length-scale", "readings", "length", "linear"};
-const EffectName kDrift{"station-drift", "station P1", "time", "linear"};
-const EffectName kDeadPath{"dead-path", "readings of P1_short", "time", "linear"};
-const EffectName kLead{"lead-error", "EXX", "x", "periodic"};
+const EffectName kLengthScale = EffectName::of_parts("length-scale", "readings", "length", "linear");
+const EffectName kDrift = EffectName::of_parts("station-drift", "station P1", "time", "linear");
+const EffectName kDeadPath = EffectName::of_parts("dead-path", "readings of P1_short", "time", "linear");
+const EffectName kLead = EffectName::of_parts("lead-error", "EXX", "x", "periodic");
 
 /// Four stations, one tool at each; `again`: stations that are then visited once more.
 sim::Study one_tool_per_station(const std::vector<std::string>& again = {}) {

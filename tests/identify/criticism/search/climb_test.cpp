@@ -36,7 +36,7 @@ const Reached& climbed_by_reversal() {
 std::size_t family_of_reversal() {
   const std::vector<Family>& families = climbed_by_reversal().setting().families;
   const auto found = std::ranges::find_if(families, [](const Family& family) {
-    return family.name().kind == "reversal" && family.name().target == "EXX";
+    return family.name().kind == "reversal" && family.name().target.name() == "EXX";
   });
   return static_cast<std::size_t>(found - families.begin());
 }

@@ -77,8 +77,8 @@ TEST(OneCause, TheSquareOfATemperatureTakesThePlaceOfTwoNames) {
   const auto cause = one_cause_of_two(state);
   ASSERT_TRUE(cause.has_value());
   EXPECT_EQ(cause->replaces, (std::set<std::size_t>{0, 1}));
-  EXPECT_EQ(cause->surface.effect->name().target, "EAZ");
-  EXPECT_EQ(cause->surface.effect->name().driver, "T_column");
+  EXPECT_EQ(cause->surface.effect->name().target.name(), "EAZ");
+  EXPECT_EQ(cause->surface.effect->name().driver.name(), "T_column");
   EXPECT_EQ(names_of(cause->surface.finding.variables), (std::vector<std::string>{"T_column"}));
   EXPECT_GT(cause->surface.log_evidence, 5.0);
 }
@@ -115,8 +115,8 @@ TEST(OneCause, ASurfaceOfTwoVariablesTakesThePlaceOfACurveAndAName) {
   ASSERT_TRUE(cause.has_value());
   EXPECT_EQ(cause->replaces, std::set<std::size_t>{0});
   EXPECT_EQ(cause->replaces_surface, std::optional<std::size_t>(0));
-  EXPECT_EQ(cause->surface.effect->name().target, "EAZ");
-  EXPECT_EQ(cause->surface.effect->name().driver, "y T_column");
+  EXPECT_EQ(cause->surface.effect->name().target.name(), "EAZ");
+  EXPECT_EQ(cause->surface.effect->name().driver.name(), "y T_column");
   EXPECT_GT(cause->surface.log_evidence, state.surfaces()[0].log_evidence);
 }
 

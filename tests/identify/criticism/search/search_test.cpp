@@ -14,8 +14,10 @@
 #include "tests/support/hidden_studies.h"
 #include "tests/support/long_tests.h"
 #include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/scans/scan_variables.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/effects/registry.h"
 
 namespace volcal {
 namespace {
@@ -44,7 +46,8 @@ Diagnosis searched(const FittedStudy& study, bool climb, std::vector<std::string
 std::vector<std::string> kinds_and_targets(const std::vector<EffectFinding>& findings) {
   std::vector<std::string> all;
   all.reserve(findings.size());
-  for (const EffectFinding& finding : findings) all.push_back(finding.name.kind + " " + finding.name.target);
+  for (const EffectFinding& finding : findings)
+    all.push_back(finding.name.kind + " " + finding.name.target.name());
   return all;
 }
 
@@ -80,9 +83,9 @@ TEST(Search, KeepsEverySetOfNamesThatTheReadingsDoNotSeparate) {
   std::set<std::string> found;
   for (const auto* set : sets) {
     ASSERT_GE(set->size(), 2U);
-    EXPECT_EQ(set->at(0).name.target, set->at(1).name.target);
-    EXPECT_NE(set->at(0).name.driver, set->at(1).name.driver);
-    found.insert(set->at(0).name.target);
+    EXPECT_EQ(set->at(0).name.target.name(), set->at(1).name.target.name());
+    EXPECT_NE(set->at(0).name.driver.name(), set->at(1).name.driver.name());
+    found.insert(set->at(0).name.target.name());
   }
   EXPECT_EQ(found, (std::set<std::string>{"EAZ", "ECX"}));
   EXPECT_EQ(std::ranges::count(diagnosis.findings, FindingCode::DiagnosisOneOf, &Finding::code), 2);
@@ -116,7 +119,7 @@ TEST(Search, NamesTwoEffectsThatAScanTakesForOne) {
   for (const AddedEffect& added : search.reached().added()) {
     const EffectName name = search.reached().setting().families[added.test.family].name();
     EXPECT_EQ(name.kind, "thermal-drift");
-    drivers.insert(name.driver);
+    drivers.insert(name.driver.name());
   }
   EXPECT_EQ(drivers, (std::set<std::string>{"T_column", "T_ram"}));
   EXPECT_EQ(search.reached().added().size(), 2U);
@@ -335,19 +338,28 @@ TEST(Search, FindsWhatTheNoiseHasTakenUp) {
 
 TEST(ScanVariables, OfAnEffect) {
   using Names = std::vector<std::string>;
-  const auto names = [](const EffectName& name) { return names_of(scan_variables_of(name)); };
-  EXPECT_EQ(names({"position-reversal", "EXX", "dir_x x", "linear"}), (Names{"dir_x", "x"}));
-  EXPECT_EQ(names({"tool-offset", "tool side_x", "tool", "step"}), (Names{"tool side_x"}));
-  EXPECT_EQ(names({"station-drift", "station P1", "time", "linear"}), (Names{"station P1", "time"}));
-  EXPECT_EQ(names({"tool-load", "EAZ", "tool long", "step"}), (Names{"tool long"}));
-  EXPECT_EQ(names({"spindle-growth", "tool", "time", "1-exp(-t/tau)"}), (Names{"time"}));
-  EXPECT_EQ(names({"servo-mismatch", "XY", "dir", "sin(2 phi)"}), (Names{"dir_x", "dir_y"}));
-  EXPECT_EQ(names({"servo-mismatch", "XY", "dir feed", "sin(2 phi)"}), (Names{"dir_x", "dir_y", "feed"}));
-  EXPECT_EQ(names({"following-error", "EXX", "dir_x feed", "cos(phi)"}), (Names{"dir_x", "feed"}));
-  EXPECT_EQ(names({"run-offset", "readings of S1", "run 2", "step"}), (Names{"run"}));
-  EXPECT_EQ(names({"ball-bar-length", "readings", "ball-bar", "step"}), Names{"instrument ball-bar"});
-  EXPECT_EQ(names({"tracker-angles", "readings", "azimuth", "periodic"}), Names{});
-  EXPECT_EQ(names({"empirical", "EXX", "t since_x", "surface"}), (Names{"time", "travel since dir_x"}))
+  const auto names = [](const std::string& kind,
+                        std::initializer_list<std::pair<std::string, OptionValue>> options) {
+    return names_of(scan_variables_of(find_effect(kind)->make(effect_spec(kind, options), {})->name()));
+  };
+  EXPECT_EQ(names("position-reversal", {{"symbol", "EXX"}}), (Names{"dir_x", "x"}));
+  EXPECT_EQ(names("tool-offset", {{"tool", "side x"}}), (Names{"tool side x"}));
+  EXPECT_EQ(names("station-drift", {{"station", "P1"}}), (Names{"station P1", "time"}));
+  EXPECT_EQ(names("tool-load", {{"symbol", "EAZ"}, {"tool", "long"}}), (Names{"tool long"}));
+  EXPECT_EQ(names("tool-load", {{"symbol", "EAZ"}}), Names{}) << "of lengths there is no scan";
+  EXPECT_EQ(names("spindle-growth", {}), (Names{"time"}));
+  EXPECT_EQ(names("servo-mismatch", {{"axis", "Y"}, {"second_axis", "X"}}), (Names{"dir_x", "dir_y"}));
+  EXPECT_EQ(names("servo-mismatch", {{"axis", "X"}, {"second_axis", "Y"}, {"by", "feed"}}),
+            (Names{"dir_x", "dir_y", "feed"}));
+  EXPECT_EQ(names("following-error", {{"axis", "X"}, {"by", "feed"}}), (Names{"dir_x", "feed"}));
+  EXPECT_EQ(names("run-offset", {{"setup", "S1"}, {"run", 2.0}}), (Names{"run"}));
+  EXPECT_EQ(names("ball-bar-length", {}), Names{"instrument ball-bar"});
+  EXPECT_EQ(names("encoder-eccentricity", {{"encoder", "azimuth"}}), Names{});
+  EXPECT_EQ(names("thermal-drift", {{"symbol", "EAZ"}, {"temperature", "front bearing"}}),
+            Names{"T_front bearing"})
+      << "a channel whose name has a blank";
+  EXPECT_EQ(names("empirical", {{"target", "EXX"}, {"drivers", "t since_x"}}),
+            (Names{"time", "travel since dir_x"}))
       << "as users write of them";
 }
 

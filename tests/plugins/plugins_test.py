@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""An effect, an instrument, a basis, a table format and a command are one file and one line each.
+"""An effect, an instrument, one that can be planned for, a basis, a table format and a command are one file and one line
+each.
 
   plugins_test.py BUILD       (BUILD: a build folder with the program and the tests built, Ninja)
 
-Adds the five of samples/ to a copy of the sources and counts what it touched. Then the registries and the samples are
+Adds those of samples/ to a copy of the sources and counts what it touched. Then the registries and the samples are
 compiled and linked before the libraries of the build, so that the tests over everything registered and the program know
 them, and these must pass. With samples that are wrong (VOLCAL_WRONG_SAMPLE) the same tests must fail: they were found
 without an edit of a test.
@@ -29,6 +30,8 @@ BUILD = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else ROOT /
 PLUGINS = {
     "effect": ("model/effects/kinds/drive/sample.cpp", "model/effects/registry.cpp", "EFFECT", "sample_effect"),
     "instrument": ("model/instruments/sample.cpp", "model/instruments/registry.cpp", "INSTRUMENT", "sample_instrument"),
+    "planned": ("identify/planning/instruments/sample.cpp", "identify/planning/registry.cpp", "INSTRUMENT",
+                "planned_sample"),
     "basis": ("model/functions/sample.cpp", "model/functions/registry.cpp", "BASIS", "kSampleBasis"),
     "format": ("identify/compensation/formats/sample.cpp", "identify/compensation/table_formats.cpp", "FORMAT",
                "sample_format"),
@@ -36,15 +39,16 @@ PLUGINS = {
 }
 # What finds a plug-in: program of tests, suites, and the sample that a wrong one of breaks it.
 CONTRACTS = [("model_tests", "EffectContract.*", "effect"), ("model_tests", "*InstrumentContract*", "instrument"),
-             ("model_tests", "*BasisContract*", "basis"), ("identify_tests", "*TableFormatContract*sample*", "format")]
+             ("model_tests", "*BasisContract*", "basis"), ("identify_tests", "*TableFormatContract*sample*", "format"),
+             ("identify_tests", "PlanInstruments.*", "planned")]
 # The other suites that go through a registry: they must pass as they stand.
 LOOPS = {
     "model_tests": ["DriverCheck.*", "EffectMeanings.*", "*EffectAgainstJet*", "InstrumentTraits.*"],
     "identify_tests": ["*TablesInTheLoop*sample*", "Alignment.*", "DrawGradients.*", "DriverPolynomials.*", "EffectWords.*",
                        "ErrorField.*", "KnownTruth.*", "TableReaders.*"],
-    "io_tests": ["*MistakenFiles*sample*", "ControlTables.*", "EffectBadInput.*", "Mutation.*"],
+    "io_tests": ["*MistakenFiles*sample*", "ControlTables.*", "EffectBadInput.*", "Mutation.*", "StudyOfAPlan.*"],
 }
-REGISTRIES = re.compile(r"\b(effect_kinds|instruments|basis_kinds|table_formats)\(\)")
+REGISTRIES = re.compile(r"\b(effect_kinds|instruments|plan_instruments|basis_kinds|table_formats)\(\)")
 SOURCES = ("model", "identify", "include")
 
 
@@ -65,7 +69,8 @@ def register(root, plugin):
     file, registry, macro, line = PLUGINS[plugin]
     shutil.copy(HERE / "samples" / f"{plugin}.cpp", root / file)
     text = (root / registry).read_text(encoding="utf-8")
-    changed, count = re.subn(rf"(#define VOLCAL_\w+\({macro}\) *\\\n)", rf"\1  {macro}({line}) \\\n", text)
+    # below the first, which may be the one that a user who says nothing has
+    changed, count = re.subn(rf"(#define VOLCAL_\w+\({macro}\) *\\\n.*\\\n)", rf"\1  {macro}({line}) \\\n", text)
     assert count == 1, f"{registry} has no list of {macro}"
     (root / registry).write_text(changed, encoding="utf-8")
 
@@ -140,8 +145,8 @@ class Plugins(unittest.TestCase):
 
     @classmethod
     def compile(cls, source, wrong):
-        target = {"model": "volcal_model"}.get(source.split("/")[0]) or (
-            "volcal_cli" if source.startswith("identify/cli") else "volcal_compensation")
+        layers = {"model": "volcal_model", "identify/cli": "volcal_cli", "identify/planning": "volcal_planning"}
+        target = next((each for top, each in layers.items() if source.startswith(top + "/")), "volcal_compensation")
         words = [word.replace(f"-I{ROOT}/include", f"-I{cls.tree}/include") for word in flags_of(target)]
         wrongly = ["-DVOLCAL_WRONG_SAMPLE"] if wrong else []
         subprocess.run([*words, "-O1", *wrongly, "-c", str(cls.tree / source), "-o", str(cls.object_of(source, wrong))],
@@ -214,6 +219,14 @@ class Plugins(unittest.TestCase):
                             'noise = { constant_um = 1 }\n', encoding="utf-8")
         compared = said("compare", str(campaign), "nominal")
         self.assertIn("sample-gauge", compared)
+        self.assertIn("sample-bar", said("plan", "--help"))
+        planned = pathlib.Path(self.folder.name) / "plan"
+        said("plan", str(demo / "machine.toml"), "--instrument", "sample-bar", "--bar-mm", "100", "--stations", "2",
+             "--readings", "48", "--seed", "1", "-o", str(planned))
+        # a circle of 12 positions, there and back, is taken whole
+        written = sorted(planned.glob("**/*.csv"))
+        rows = sum(len(each.read_text(encoding="utf-8").splitlines()) - 1 for each in written if "_XY" in each.name)
+        self.assertEqual((rows > 0, rows % 24), (True, 0), [str(each) for each in written])
 
 
 if __name__ == "__main__":

@@ -9,8 +9,8 @@ namespace {
 
 using Kind = Variable::Kind;
 
-constexpr std::string_view kTool = "tool", kStation = "station", kStations = "stations",
-                           kReadings = "readings", kOf = " of ", kDirectionLetters = "xyz";
+constexpr std::string_view kToolWord = "tool", kStationWord = "station", kStationsWord = "stations",
+                           kReadingsWord = "readings", kOf = " of ", kDirectionLetters = "xyz";
 
 std::string joined_words(const std::vector<std::string>& words) {
   std::string text;
@@ -63,19 +63,20 @@ TargetName::TargetName(const std::vector<ErrorSymbol>& motions) : errors_(motion
 TargetName TargetName::of_tool(const std::string& tool, std::optional<int> direction) {
   TargetName target;
   if (!tool.empty()) target.owner_ = Variable{.kind = Kind::Tool, .subject = tool};
-  target.name_ = with_direction(target.owner_ ? target.owner_->name() : std::string(kTool), direction);
+  target.name_ = with_direction(target.owner_ ? target.owner_->name() : std::string(kToolWord), direction);
   return target;
 }
 
 TargetName TargetName::of_station(const std::string& station, std::optional<int> direction) {
   TargetName target;
   if (!station.empty()) target.owner_ = Variable{.kind = Kind::Station, .subject = station};
-  target.name_ = with_direction(target.owner_ ? target.owner_->name() : std::string(kStations), direction);
+  target.name_ =
+      with_direction(target.owner_ ? target.owner_->name() : std::string(kStationsWord), direction);
   return target;
 }
 
 TargetName TargetName::of_readings(const std::string& setup) {
-  return called(std::string(kReadings) + (setup.empty() ? "" : std::string(kOf) + setup));
+  return called(std::string(kReadingsWord) + (setup.empty() ? "" : std::string(kOf) + setup));
 }
 
 TargetName TargetName::called(std::string name) {
@@ -98,10 +99,10 @@ TargetName TargetName::parse(std::string_view text) {
     target = *location;
   } else if (const auto motions = motions_in(text); motions && !motions->empty()) {
     target = TargetName(*motions);
-  } else if (const auto tool = after_word(text, kTool)) {
+  } else if (const auto tool = after_word(text, kToolWord)) {
     const auto [owner, direction] = owner_and_direction(*tool);
     target = of_tool(owner, direction);
-  } else if (const auto station = after_word(text, kStation)) {
+  } else if (const auto station = after_word(text, kStationWord)) {
     const auto [owner, direction] = owner_and_direction(*station);
     target = owner.empty() ? called(std::string(text)) : of_station(owner, direction);
   }

@@ -486,12 +486,11 @@ TEST_F(Catalogue, ADeadPathIsOfASetupOfAStationOrOfAllLasers) {
 
   std::vector<std::string> shared;
   for (const EffectSpec& each : find_effect("dead-path")->candidates(campaign_)) {
-    const EffectName name = find_effect("dead-path")->make(each, "model.toml")->name();
-    if (!name.target.name().starts_with("readings of"))
-      shared.push_back(name.target.name() + " " + name.driver.name());
+    const std::string name = full_name(find_effect("dead-path")->make(each, "model.toml")->name());
+    if (name.find(" of ") == name.npos) shared.push_back(name.substr(10, name.rfind(':') - 10));
   }
-  EXPECT_THAT(shared, ::testing::ElementsAre("station P1 time", "station P1 T_air", "station P1 T_spindle",
-                                             "readings time", "readings T_air", "readings T_spindle"));
+  EXPECT_THAT(shared, ::testing::ElementsAre("station P1:time", "station P1:T_air", "station P1:T_spindle",
+                                             "readings:time", "readings:T_air", "readings:T_spindle"));
 }
 
 TEST_F(Catalogue, AllStationsDriftTogether) {

@@ -12,7 +12,8 @@ namespace {
 
 /// volcal.InputError, which is defined in Python.
 void raise_input_error(const InputError& thrown) {
-  const InputError error(thrown.place(), with_arguments(thrown.problem()), with_arguments(thrown.remedy()));
+  const InputError worded = thrown.in_words_of(argument_of_setting);
+  const InputError error(worded.place(), with_arguments(worded.problem()), with_arguments(worded.remedy()));
   const py::object type = py::module_::import("volcal").attr("InputError");
   const py::object value = type(text_of(error.problem()), text_of(error.remedy()),
                                 text_of(error.place().file), error.place().line, text_of(error.what()));

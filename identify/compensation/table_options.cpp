@@ -41,7 +41,7 @@ void check_settings(const TableFormat& format, const TableFormatOptions& options
   }
   for (const auto& [name, value] : options.record.conditions) {
     if (std::ranges::find(kConditions, name) == kConditions.end())
-      throw InputError({}, "--record " + name + ": no such condition",
+      throw InputError({}, setting("record") + " " + name + ": no such condition",
                        "record one of " + listed(kConditions));
   }
 }
@@ -126,16 +126,17 @@ void check_active_tables(const TableFormat& format, const FitResult& result,
 void check_positions(const TableFormatOptions& options) {
   check_table_rows(options.functions.positions);
   if (options.grid_per_axis < 1 || options.grid_per_axis > kMostGridPerAxis)
-    throw InputError({}, "--grid " + std::to_string(options.grid_per_axis) + " is out of range",
+    throw InputError({}, setting("grid") + " " + std::to_string(options.grid_per_axis) + " is out of range",
                      "give 1 to " + std::to_string(kMostGridPerAxis));
   if (!std::isfinite(options.step) || options.step < 0.0)
-    throw InputError({}, "--step " + number_text(options.step / kMetrePerMillimetre) + " is out of range",
-                     "give a positive number of mm");
+    throw InputError(
+        {}, setting("step") + " " + number_text(options.step / kMetrePerMillimetre) + " is out of range",
+        "give a positive number of mm");
   const double rotary_step = options.rotary_step / kRadianPerDegree;
   const bool fits = rotary_step >= kFinestRotaryStep_deg * (1.0 - kRoundingOfSteps) &&
                     rotary_step <= kCoarsestRotaryStep_deg * (1.0 + kRoundingOfSteps);
   if (!fits && options.rotary_step != 0.0)
-    throw InputError({}, "--rotary-step " + number_text(rotary_step) + " is out of range",
+    throw InputError({}, setting("rotary-step") + " " + number_text(rotary_step) + " is out of range",
                      "give " + number_text(kFinestRotaryStep_deg) + " to " +
                          number_text(kCoarsestRotaryStep_deg) + " deg");
 }
@@ -210,7 +211,7 @@ const Tool& tool_of(const Machine& machine, const TableFormatOptions& options) {
   if (const auto index = machine.tool_index(options.tool)) return machine.tools[*index];
   std::vector<std::string> names;
   for (const Tool& tool : machine.tools) names.push_back(tool.name);
-  throw InputError({}, "--tool " + options.tool + ": the machine has no such tool",
+  throw InputError({}, setting("tool") + " " + options.tool + ": the machine has no such tool",
                    "its tools are " + listed(names));
 }
 

@@ -42,7 +42,8 @@ double number_of(const std::string& name, const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw InputError({}, "--conditions " + name + "=" + text + " is not a number", "write " + name + "=23.3");
+    throw InputError({}, setting("conditions") + " " + name + "=" + text + " is not a number",
+                     "write " + name + "=23.3");
   return value;
 }
 
@@ -63,7 +64,7 @@ std::string recorded_names(const FitResult& result) {
 
 void require_plausible(const std::string& name, double value, double least, double most) {
   if (value >= least && value <= most) return;
-  throw InputError({}, "--conditions " + name + " is not plausible",
+  throw InputError({}, setting("conditions") + " " + name + " is not plausible",
                    "give a value between " + std::to_string(static_cast<long>(least)) + " and " +
                        std::to_string(static_cast<long>(most)));
 }
@@ -103,7 +104,7 @@ Conditions stated_conditions(const FitResult& result, const std::map<std::string
       require_plausible(name, value, 0.0, 1e6);
       conditions.feed = value * variable->unit().si_per_unit;
     } else {
-      throw InputError({}, "--conditions " + name + ": the result does not know this condition",
+      throw InputError({}, setting("conditions") + " " + name + ": the result does not know this condition",
                        recorded_names(result));
     }
     conditions.stated.push_back(*variable);

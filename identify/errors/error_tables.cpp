@@ -351,7 +351,7 @@ PoseErrorVector variance_beyond_readings(const FitResult& result, const ErrorFie
 
 void check_table_rows(int positions) {
   if (positions == 0 || (positions >= kFewestTableRows && positions <= kMostTableRows)) return;
-  throw InputError({}, "--positions " + std::to_string(positions) + " is out of range",
+  throw InputError({}, setting("positions") + " " + std::to_string(positions) + " is out of range",
                    "give " + std::to_string(kFewestTableRows) + " to " + std::to_string(kMostTableRows));
 }
 

@@ -84,6 +84,12 @@ std::string argument_of(const std::smatch& found) {
 
 }  // namespace
 
+std::string argument_of_setting(const std::string& name) {
+  const auto argument = std::ranges::find(kArguments, std::string_view(name),
+                                          &std::pair<std::string_view, std::string_view>::first);
+  return argument == kArguments.end() ? "--" + name : std::string(argument->second);
+}
+
 std::string with_arguments(const std::string& message) {
   if (message.find('-') == std::string::npos) return message;
   std::string text = message;

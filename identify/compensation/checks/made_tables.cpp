@@ -109,8 +109,9 @@ void report_more_than_none(MadeTables& made) {
 /// 0 = the default.
 void check_tolerance(double tolerance) {
   if (!std::isfinite(tolerance) || tolerance < 0.0)
-    throw InputError({}, "--tolerance " + number_text(tolerance / kMetrePerMicrometre) + " is out of range",
-                     "give a positive number of um");
+    throw InputError(
+        {}, setting("tolerance") + " " + number_text(tolerance / kMetrePerMicrometre) + " is out of range",
+        "give a positive number of um");
 }
 
 }  // namespace

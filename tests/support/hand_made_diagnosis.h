@@ -108,15 +108,8 @@ inline Diagnosis hand_made_diagnosis() {
   diagnosis.detectable = {{reversal.name, reversal.label, "", "um", 1e-6, 0.75, true, 0.5e-6, 0.25e-6},
                           {other.name, other.label, "", "um", 1e-6, 0.5, true, 0.75e-6, 0.375e-6},
                           {third.name, third.label, "", "um", 1e-6, 0.01, false, std::nan(""), std::nan("")},
-                          {{"length-scale", "readings", "length", "linear"},
-                           "length scale",
-                           "",
-                           "ppm",
-                           1e-6,
-                           0.9,
-                           true,
-                           0.2e-6,
-                           std::nan("")}};
+                          {EffectName::of_parts("length-scale", "readings", "length", "linear"),
+                           "length scale", "", "ppm", 1e-6, 0.9, true, 0.2e-6, std::nan("")}};
   diagnosis.noise = {{0, "white", "1", 1.25, 1.125, 1.375, std::nan(""), ""},
                      {0, "wander", "m or rad", 0.5e-6, 0.25e-6, 0.75e-6, 40.0, ""},
                      {1, "line", "m or rad", 0.0, 0.0, 0.0, 0.5, "off: not supported"}};

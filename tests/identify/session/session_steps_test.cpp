@@ -137,7 +137,7 @@ TEST_F(SessionSteps, EffectsOfTheGivenModelAreListedAndTakenOut) {
   EXPECT_FALSE(own->is_preview(kOfY));
   EXPECT_GT(listed.amplitudes.at(0).u, 0.0);
   EXPECT_TRUE(std::isnan(listed.log10_p)) << "no test was made of it";
-  own->add({"reversal", "EXX", "dir_x", "step"});
+  own->add(EffectName::of_parts("reversal", "EXX", "dir_x", "step"));
   own->take(own->confirmation());
   ASSERT_EQ(own->model().effects.size(), 2U);
   EXPECT_EQ(own->model().effects[0].options.number("amplitude"), given.options.number("amplitude"))
@@ -162,7 +162,7 @@ TEST_F(SessionSteps, WhatIsConfirmedKeepsTheTestThatItWasAddedBy) {
 TEST_F(SessionSteps, GoingToAModelIsUndone) {
   const auto own = open();
   own->add(kOfY);
-  own->add({"reversal", "EXX", "dir_x", "step"});
+  own->add(EffectName::of_parts("reversal", "EXX", "dir_x", "step"));
   own->undo();
   own->go_to(0);
   EXPECT_TRUE(own->can_undo());

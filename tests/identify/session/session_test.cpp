@@ -223,7 +223,8 @@ TEST_F(SessionOfTwo, KeepsFewFullFitsAndMakesTheOthersAgain) {
   const std::vector<EffectFinding> effects = own->current().effects;
   for (const char* axis : {"EXX", "EZZ", "EXY"}) {
     own->go_to(1);
-    own->add({"reversal", axis, std::string("dir_") + static_cast<char>(axis[2] + ('a' - 'A')), "step"});
+    own->add(EffectName::of_parts("reversal", axis,
+                                  std::string("dir_") + static_cast<char>(axis[2] + ('a' - 'A')), "step"));
     own->take(own->confirmation());
     EXPECT_LE(own->kept_fits(), Session::kKeptFits);
   }
@@ -337,7 +338,7 @@ TEST_F(SessionOfTwo, IsConfirmedByAFullFit) {
   const ModelSpec model = own->model();
   ASSERT_EQ(model.effects.size(), 2U);
   EXPECT_EQ(model.effects[0].options.number("amplitude"), figure.value);
-  own->add({"reversal", "EZZ", "dir_z", "step"});
+  own->add(EffectName::of_parts("reversal", "EZZ", "dir_z", "step"));
   EXPECT_EQ(own->current().effects.size(), 3U);
   EXPECT_EQ(own->current().effects[0].amplitudes[0].value, figure.value) << "held by the fit";
   EXPECT_FALSE(own->is_preview(kReversal));

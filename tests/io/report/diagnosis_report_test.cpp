@@ -194,7 +194,8 @@ TEST_F(DiagnosisReport, WhatIsToldApartAndWhatToMeasure) {
 TEST_F(DiagnosisReport, AProposalSaysWhatIsDoneBeforeWhatItIsGoodFor) {
   MeasurementProposal& visit = diagnosis_.proposals.front();
   visit.finding.data["measurement"] = "measure P1 again after 3 h";
-  visit.separates = {{"axis-coupling", "EAY", "z", "linear"}, {"resolution", "EYX", "x", "finer"}};
+  visit.separates = {EffectName::of_parts("axis-coupling", "EAY", "z", "linear"),
+                     EffectName::of_parts("resolution", "EYX", "x", "finer")};
   diagnosis_.confounding.names[2] = visit.separates[1];
   MeasurementProposal nothing = visit;
   nothing.action.clear();

@@ -59,7 +59,7 @@ TEST(EffectWords, CoverEveryRegisteredEffectAndNothingElse) {
 
 TEST(EffectWords, CapitalsStandForNamesOfTheFiles) {
   const auto target = [](const std::string& text) {
-    const auto word = find_word(NamePart::Target, {"reversal", text, "x", "step"});
+    const auto word = find_word(NamePart::Target, EffectName::of_parts("reversal", text, "x", "step"));
     return word ? std::string(word->pattern) : "none";
   };
   EXPECT_EQ(target("EXX"), "SYMBOL");
@@ -69,14 +69,17 @@ TEST(EffectWords, CapitalsStandForNamesOfTheFiles) {
   EXPECT_EQ(target("tool long probe"), "tool TOOL");
   EXPECT_EQ(target("readings of S (1)"), "readings of SETUP");
   EXPECT_EQ(target("EAX EBX"), "none") << "only for what a model leaves out, and one cause in several places";
-  const auto several = find_word(NamePart::Driver, {"common-reversal", "EXX EYY", "dir_x dir_y", "step"});
+  const auto several =
+      find_word(NamePart::Driver, EffectName::of_parts("common-reversal", "EXX EYY", "dir_x dir_y", "step"));
   ASSERT_TRUE(several);
   EXPECT_EQ(several->pattern, "dir_AXIS dir_AXIS ...");
-  EXPECT_TRUE(find_word(NamePart::Target, {"common-reversal", "EXX EYY", "dir_x dir_y", "step"}));
-  const auto shape = find_word(NamePart::Shape, {"servo-mismatch", "XY", "dir", "sin(2 phi)"});
+  EXPECT_TRUE(
+      find_word(NamePart::Target, EffectName::of_parts("common-reversal", "EXX EYY", "dir_x dir_y", "step")));
+  const auto shape =
+      find_word(NamePart::Shape, EffectName::of_parts("servo-mismatch", "XY", "dir", "sin(2 phi)"));
   ASSERT_TRUE(shape);
   EXPECT_EQ(shape->pattern, "sin(2 phi)");
-  EXPECT_EQ(full_name({"reversal", "EXX", "dir_x", "step"}), "reversal:EXX:dir_x:step");
+  EXPECT_EQ(full_name(EffectName::of_parts("reversal", "EXX", "dir_x", "step")), "reversal:EXX:dir_x:step");
 }
 
 /// A pattern and a meaning for every variable that scans go through, by which its name is found.

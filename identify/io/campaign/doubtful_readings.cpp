@@ -24,6 +24,7 @@ constexpr double kFineDigits = 0.01;  // of the stated noise: equal by chance is
 constexpr double kRoundingOfDigits = 1e-3;
 constexpr std::size_t kFewestMoves = 5;
 constexpr double kShareAgainstOrder = 0.8;
+constexpr double kBeyondChance = 3.0;      // standard deviations of moves against directions that are drawn
 constexpr double kSlowestStep_s = 1000.0;  // median between readings, over more than a day
 constexpr double kDay_s = 86400.0;
 constexpr double kFastest = 5.0;  // m/s between readings
@@ -111,6 +112,14 @@ std::optional<Finding> repeated_rows(const Setup& setup) {
                   {"at_other_times", at_other_times}}};
 }
 
+/// Targets that scatter about a grid and approaches from one side hide the order of the moves: half of them
+/// may go against directions that are right, hardly more than half.
+bool are_against(std::size_t against, std::size_t moves) {
+  if (moves < kFewestMoves) return false;
+  const auto all = static_cast<double>(moves), some = static_cast<double>(against);
+  return some >= kShareAgainstOrder * all || some - 0.5 * all > kBeyondChance * 0.5 * std::sqrt(all);
+}
+
 /// Stated directions against the moves between neighbouring readings of a pass.
 std::optional<Finding> against_order(const Readings& readings, AxisName axis) {
   const auto& stated = readings.direction[index_of(axis)];
@@ -126,8 +135,7 @@ std::optional<Finding> against_order(const Readings& readings, AxisName axis) {
       against += (move > 0.0) == (direction > 0) ? 0U : 1U;
     }
   }
-  const bool most = static_cast<double>(against) >= kShareAgainstOrder * static_cast<double>(moves);
-  if (moves < kFewestMoves || !most) return std::nullopt;
+  if (!are_against(against, moves)) return std::nullopt;
   return Finding{FindingCode::ReadingsAgainstDirection,
                  {{"against", count(against)},
                   {"moves", count(moves)},

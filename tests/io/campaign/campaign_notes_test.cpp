@@ -193,6 +193,29 @@ TEST_F(NotesTest, DirectionsAgainstTheOrderAreTold) {
   EXPECT_EQ(mended.setups[0].readings.direction[0][3], 1);
 }
 
+TEST_F(NotesTest, DirectionsAgainstMoreMovesThanChanceAllowsAreTold) {
+  // Of every three moves two go up.
+  const auto scattered = [](int direction) {
+    std::string csv = "x_mm,y_mm,z_mm,displacement_mm,dir_x\n0,0,0,0,1\n";
+    double x = 0.0;
+    for (int k = 0; k < 150; ++k) {
+      x += k % 3 == 2 ? -1.0 : 2.0;
+      csv += fmt::format("{0},0,0,{0},{1}\n", x, direction);
+    }
+    return csv;
+  };
+  EXPECT_THAT(read(scattered(1)).notes, IsEmpty());
+  EXPECT_THAT(sentences(read(scattered(-1)).notes),
+              Contains(HasSubstr("100 of 150 moves of X go against dir_x")));
+}
+
+TEST_F(NotesTest, ApproachesFromOneSideAreTaken) {
+  std::string csv = "x_mm,y_mm,z_mm,displacement_mm,dir_x\n";
+  for (int k = 0; k <= 100; ++k) csv += fmt::format("{0},0,0,{0},1\n", 4 * k);
+  for (int k = 99; k >= 0; --k) csv += fmt::format("{0},0,0,{0}.001,1\n", 4 * k);
+  EXPECT_THAT(read(csv).notes, IsEmpty());
+}
+
 TEST_F(NotesTest, TimesInMillisecondsAreTold) {
   std::string csv = "x_mm,y_mm,z_mm,displacement_mm,time_s\n";
   for (int k = 0; k < 30; ++k)

@@ -221,10 +221,9 @@ TEST_F(SessionOfTwo, KeepsFewFullFitsAndMakesTheOthersAgain) {
   const Eigen::VectorXd residual = own->residual();
   const std::vector<EffectFinding> ranking = own->rank();
   const std::vector<EffectFinding> effects = own->current().effects;
-  for (const char* axis : {"EXX", "EZZ", "EXY"}) {
+  for (const auto& [symbol, driver] : {std::pair{"EXX", "dir_x"}, {"EZZ", "dir_z"}, {"EXY", "dir_y"}}) {
     own->go_to(1);
-    own->add(EffectName::of_parts("reversal", axis,
-                                  std::string("dir_") + static_cast<char>(axis[2] + ('a' - 'A')), "step"));
+    own->add(EffectName::of_parts("reversal", symbol, driver, "step"));
     own->take(own->confirmation());
     EXPECT_LE(own->kept_fits(), Session::kKeptFits);
   }

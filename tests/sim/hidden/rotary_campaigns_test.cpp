@@ -47,12 +47,12 @@ TEST(RotaryCampaigns, EveryKindMeetsEveryStructureAndHasItsName) {
     EXPECT_NEAR(static_cast<double>(simulated.campaign.reading_count()), kReadings, 0.2 * kReadings);
     const RightAnswer right = right_answer(effect, simulated.campaign);
     ASSERT_TRUE(right.name) << text_of(effect);
-    EXPECT_EQ(right.name->kind + " " + right.name->target, expected_name(effect)) << text_of(effect);
+    EXPECT_EQ(right.name->kind + " " + right.name->target.name(), expected_name(effect)) << text_of(effect);
     if (effect.kind == "worm") {
       EXPECT_EQ(*right.spec->options.number("period"), *effect.options.number("period"));
     }
     if (effect.kind == "squareness-channel") {
-      EXPECT_EQ(right.name->driver, "T_" + *effect.options.text("channel"));
+      EXPECT_EQ(right.name->driver.name(), "T_" + *effect.options.text("channel"));
     }
   }
   EXPECT_EQ(met.size(), 16U);

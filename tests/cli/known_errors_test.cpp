@@ -208,7 +208,7 @@ TEST_F(KnownErrors, OfToolsActInEveryOutput) {
     return json.at("volumetric_errors")[0].at("error_um").get<std::vector<double>>();
   };
   done("tables " + path("tool.toml") + " --positions 401 -o " + path("tables"));
-  for (const std::string errors : {path("tool.toml"), path("tables")}) {
+  for (const std::string& errors : {path("tool.toml"), path("tables")}) {
     const auto with = error_of(errors, "side_x"), without = error_of(path("rigid.toml"), "side_x");
     EXPECT_NEAR(with[0] - without[0], 40.0, 0.05) << errors;
     EXPECT_NEAR(with[1] - without[1], -30.0, 0.05) << errors;

@@ -50,10 +50,11 @@ std::string rows_repeated(const Finding& finding) {
   return in_setup(finding) +
          fmt::format(
              "{} of {} rows repeat an earlier row in {}, line {} that of line {}: each counts as a "
-             "measurement of its own; remove the copies",
+             "measurement of its own; remove the copies{}",
              finding.count("repeats"), finding.count("rows"),
              finding.flag("at_other_times") ? "all but its time" : "every column", finding.count("line"),
-             finding.count("first_line"));
+             finding.count("first_line"),
+             finding.flag("at_other_times") ? ", unless the readings were computed without noise" : "");
 }
 
 std::string against_direction(const Finding& finding) {

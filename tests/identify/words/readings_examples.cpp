@@ -28,6 +28,19 @@ std::vector<WordedFinding> examples_of_readings() {
          {"at_other_times", false}}},
        "setup \"X\" (line.csv): 5 of 10 rows repeat an earlier row in every column, line 7 that of line 2: "
        "each counts as a measurement of its own; remove the copies"},
+      {{FindingCode::ReadingsRowsRepeated,
+        {{"setup", "X"},
+         {"file", "line.csv"},
+         {"repeats", std::int64_t{5}},
+         {"rows", std::int64_t{10}},
+         {"line", std::int64_t{7}},
+         {"first_line", std::int64_t{2}},
+         {"at_other_times", true}}},
+       "setup \"X\" (line.csv): 5 of 10 rows repeat an earlier row in all but its time, line 7 that of line "
+       "2: "
+       "each counts as a measurement of its own; remove the copies, unless the readings were computed "
+       "without "
+       "noise"},
       {{FindingCode::ReadingsAgainstDirection,
         {{"setup", "X"},
          {"file", "line.csv"},

@@ -15,10 +15,10 @@
 /// at home is, of the error motions, a slope of the displacements of the axes behind.
 ///
 /// With s_ki the least-squares slope over the travel of component k of axis i's displacement, s_ki + s_ik is
-/// the squareness of i and k, as in compensation.h. The error motions are stated without it: the slope s_ki of
-/// the earlier axis of the datum stays, and its opposite of the later one, which together are a rotation of
-/// the machine frame. Motions and squareness move the functional point as before, but for a constant where an
-/// axis is not at 0 at home.
+/// the squareness of i and k, as in compensation.h. The error motions are stated without it: the slope s_ki
+/// of the earlier axis of the datum stays, and its opposite of the later one, which together are a rotation
+/// of the machine frame. Motions and squareness move the functional point as before, but for a constant where
+/// an axis is not at 0 at home.
 
 #include <Eigen/Core>
 #include <memory>

@@ -62,8 +62,8 @@ struct TcpSummary {
   std::int64_t first_beyond = 0;     ///< line of the first of them
   /// Axes that went beyond their travel, taken to turn without end since they carry the workpiece.
   std::set<AxisName> assumed_endless;
-  double length = 0.0;               ///< of feed motions, m
-  TcpErrors before, after;           ///< where a check is asked for
+  double length = 0.0;      ///< of feed motions, m
+  TcpErrors before, after;  ///< where a check is asked for
 };
 
 class TcpRewriter {

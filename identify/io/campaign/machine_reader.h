@@ -13,7 +13,8 @@ namespace volcal {
 inline constexpr const char* kMachineFormat = "volcal-machine-1";
 
 /// Reads a machine file. `named_at`: line of another file that names this one. Without [datum] the primary
-/// axis is X and the secondary Y; reference_point_mm and centre_mm default to the origin; `endless` of a rotary axis as Machine::is_endless() says. Throws InputError.
+/// axis is X and the secondary Y; reference_point_mm and centre_mm default to the origin; `endless` of a
+/// rotary axis as Machine::is_endless() says. Throws InputError.
 Machine read_machine(const std::string& path, const SourcePlace& named_at = {});
 /// The same from text; `file` names it in messages.
 Machine parse_machine(const std::string& text, const std::string& file);

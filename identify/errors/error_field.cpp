@@ -17,8 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kEdgeOfMeasured = 1e-6;  // m or rad
-
 /// Displacement and rotation of the tool per unit of an error motion.
 PoseErrorVector motion_column(const JointLever& lever, Component component) {
   PoseErrorVector column;
@@ -34,27 +32,23 @@ double temperature_excess_at(const Conditions& conditions, const std::string& ch
 
 }  // namespace
 
-MeasuredTravel::MeasuredTravel() {
-  min.fill(-std::numeric_limits<double>::infinity());
-  max.fill(std::numeric_limits<double>::infinity());
-}
-
-MeasuredTravel::MeasuredTravel(const FitResult& result) : MeasuredTravel() {
-  for (const auto& [axis, ends] : measured_positions(result)) {
-    min[index_of(axis)] = ends.first;
-    max[index_of(axis)] = ends.second;
+MeasuredTravel::MeasuredTravel(const FitResult& result) {
+  for (const auto& [axis, measured] : measured_positions(result)) {
+    const bool round =
+        result.machine.has_axis(axis) && goes_round(result.machine.axis(axis), result.identified);
+    ends[index_of(axis)] = {measured.first, measured.second, round};
   }
 }
 
 AxisPosition MeasuredTravel::held(const AxisPosition& position) const {
   AxisPosition nearest = position;
-  for (std::size_t a = 0; a < kAxisCount; ++a) nearest[a] = std::clamp(position[a], min[a], max[a]);
+  for (std::size_t a = 0; a < kAxisCount; ++a) nearest[a] = ends[a].nearest(position[a]);
   return nearest;
 }
 
 bool MeasuredTravel::is_beyond(const AxisPosition& position) const {
   for (std::size_t a = 0; a < kAxisCount; ++a) {
-    if (position[a] < min[a] - kEdgeOfMeasured || position[a] > max[a] + kEdgeOfMeasured) return true;
+    if (ends[a].is_beyond(position[a])) return true;
   }
   return false;
 }

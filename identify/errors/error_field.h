@@ -24,6 +24,7 @@
 #include "volcal/identify/errors/machine_effects.h"
 #include "volcal/identify/errors/pose.h"
 #include "volcal/identify/result/result.h"
+#include "volcal/model/description/measured_ends.h"
 #include "volcal/model/kinematics/chain.h"
 
 namespace volcal {
@@ -31,14 +32,14 @@ namespace volcal {
 using PoseErrorVector = Eigen::Matrix<double, 6, 1>;             ///< ex ey ez, m; ea eb ec, rad
 using PoseErrorRows = Eigen::Matrix<double, 6, Eigen::Dynamic>;  ///< one column per parameter
 
-/// Range of positions with readings, by AxisName, m or rad; an axis without functions has no ends.
+/// Range of positions with readings, by AxisName; an axis without functions has no ends.
 struct MeasuredTravel {
-  std::array<double, kAxisCount> min;
-  std::array<double, kAxisCount> max;
+  std::array<MeasuredEnds, kAxisCount> ends;
 
-  MeasuredTravel();  ///< without ends
+  MeasuredTravel() = default;  ///< without ends
   explicit MeasuredTravel(const FitResult& result);
-  /// The nearest position that was measured.
+  const MeasuredEnds& operator[](AxisName axis) const { return ends[index_of(axis)]; }
+  /// The nearest position that was measured; of an axis that goes round, on the circle.
   AxisPosition held(const AxisPosition& position) const;
   /// Beyond the measured positions of an axis by more than a micrometre or a microradian.
   bool is_beyond(const AxisPosition& position) const;

@@ -30,8 +30,8 @@ double shortest_piece(const FitResult& result, AxisName axis) {
     if (group.axis != axis) continue;
     const std::vector<double> ends = group.basis->pieces();
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-      const bool inside = ends[i] > measured.min[index_of(axis)] - kUnmeasuredTravel &&
-                          ends[i + 1] < measured.max[index_of(axis)] + kUnmeasuredTravel;
+      const bool inside = ends[i] > measured[axis].first - kUnmeasuredTravel &&
+                          ends[i + 1] < measured[axis].last + kUnmeasuredTravel;
       if (inside) shortest = std::min(shortest, ends[i + 1] - ends[i]);
     }
   }
@@ -445,18 +445,16 @@ std::vector<Finding> unmeasured_travel(const FitResult& result) {
   const MeasuredTravel measured(result);
   std::vector<Finding> findings;
   for (const Axis& axis : result.machine.axes) {
-    const double first = measured.min[index_of(axis.name)], last = measured.max[index_of(axis.name)];
-    const bool whole =
-        !(first > axis.travel_min + kUnmeasuredTravel) && !(last < axis.travel_max - kUnmeasuredTravel);
-    if (whole) continue;
+    const MeasuredEnds& ends = measured[axis.name];
+    if (ends.cover(axis)) continue;
     const Unit unit = position_unit(axis.name);
     const auto at = [&unit](double position) {
       return FindingNumber{position, std::string(unit.suffix), unit.si_per_unit};
     };
     findings.push_back({FindingCode::ErrorsHeldBeyondReadings,
                         {{"axis", std::string{letter_of(axis.name)}},
-                         {"measured_from", at(first)},
-                         {"measured_to", at(last)},
+                         {"measured_from", at(ends.first)},
+                         {"measured_to", at(ends.last)},
                          {"travel_from", at(axis.travel_min)},
                          {"travel_to", at(axis.travel_max)}}});
   }

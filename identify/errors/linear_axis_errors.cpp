@@ -34,7 +34,7 @@ using PieceErrors = std::vector<Vector6d>;
 std::vector<double> pieces_of(const FitResult& result, const Axis& axis) {
   std::vector<double> ends = {axis.travel_min, axis.travel_max};
   const MeasuredTravel measured(result);
-  const double first = measured.min[index_of(axis.name)], last = measured.max[index_of(axis.name)];
+  const double first = measured[axis.name].first, last = measured[axis.name].last;
   if (std::isfinite(first)) {
     const double held_piece = kHeldPiece * axis.travel();
     ends.insert(ends.end(), {first, last, std::min(first, axis.travel_min) - held_piece,
@@ -66,12 +66,11 @@ std::optional<int> degree_of(const ParameterLayout& layout, AxisName axis) {
 /// Whether a piece lies beyond the measured positions, where errors are held.
 bool is_held(const FitResult& result, AxisName axis, double middle) {
   const MeasuredTravel measured(result);
-  return middle < measured.min[index_of(axis)] || middle > measured.max[index_of(axis)];
+  return middle < measured[axis].first || middle > measured[axis].last;
 }
 
 double held_position(const FitResult& result, AxisName axis, double q) {
-  const MeasuredTravel measured(result);
-  return std::clamp(q, measured.min[index_of(axis)], measured.max[index_of(axis)]);
+  return MeasuredTravel(result)[axis].nearest(q);
 }
 
 /// Taylor series about the middle of a piece; exact, since the functions are polynomials there.

@@ -242,7 +242,7 @@ ProgramErrors program_errors(const FitResult& result, const std::string& tool_na
   const MachineEffects effects(result, tool, conditions);
   for (const AxisName axis : result.machine.main_linear_axes()) {
     auto& ends = errors.pieces[index_of(axis)];
-    for (const double end : {errors.measured.min[index_of(axis)], errors.measured.max[index_of(axis)]}) {
+    for (const double end : {errors.measured[axis].first, errors.measured[axis].last}) {
       if (std::isfinite(end)) ends.push_back(end);
     }
     EffectIntervals(effects, result, axis).refine(ends);

@@ -14,6 +14,7 @@
 #include "volcal/identify/solve/unknown_rotary_axes.h"
 #include "volcal/identify/solve/verdict.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/measured_ends.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/registry.h"
@@ -277,25 +278,23 @@ std::vector<Finding> faded_at_readings(const Campaign& campaign, const ModelSpec
 }  // namespace
 
 std::vector<Finding> held_beyond_measured(const Campaign& campaign, const ModelSpec& model) {
-  constexpr double kBeyondEnd = 1e-6;  // m or rad
   std::vector<Finding> findings;
-  for (const auto& [name, ends] : model.measured) {
-    const bool beyond = std::ranges::any_of(
-        campaign.setups, [&, axis = name, first = ends.first, last = ends.second](const Setup& setup) {
-          return std::ranges::any_of(setup.readings.position[index_of(axis)], [&](double q) {
-            return q < first - kBeyondEnd || q > last + kBeyondEnd;
-          });
-        });
+  for (const auto& [name, stated] : model.measured) {
+    const Axis& axis = campaign.machine.axis(name);
+    const MeasuredEnds ends = measured_ends(axis, model);
+    const bool beyond = std::ranges::any_of(campaign.setups, [&](const Setup& setup) {
+      return std::ranges::any_of(setup.readings.position[index_of(axis.name)],
+                                 [&ends](double q) { return ends.is_beyond(q); });
+    });
     if (!beyond) continue;
     const Unit unit = position_unit(name);
-    const Axis& axis = campaign.machine.axis(name);
     const auto number = [&](double q) {
       return FindingNumber{q, std::string(unit.suffix), unit.si_per_unit};
     };
     findings.push_back({FindingCode::ErrorsHeldBeyondReadings,
                         {{"axis", std::string(1, letter_of(name))},
                          {"measured_from", number(ends.first)},
-                         {"measured_to", number(ends.second)},
+                         {"measured_to", number(ends.last)},
                          {"travel_from", number(axis.travel_min)},
                          {"travel_to", number(axis.travel_max)}}});
   }

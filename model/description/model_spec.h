@@ -3,7 +3,6 @@
 /// Plain data as a model file holds it; SI units.
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -59,17 +58,11 @@ struct ModelSpec {
   std::vector<EffectSpec> effects;
   PriorWidths priors;
   /// Positions with readings that stated errors follow from, m or rad, first and last: beyond them errors
-  /// keep their last value. An axis without is known over its whole travel.
+  /// keep their last value (measured_ends.h). An axis without is known over its whole travel.
   std::map<AxisName, std::pair<double, double>> measured;
   /// Under which stated errors were measured; what is not recorded is not known.
   RecordedConditions conditions;
 
-  /// The nearest position that was measured.
-  double held(AxisName axis, double position) const {
-    const auto found = measured.find(axis);
-    return found == measured.end() ? position
-                                   : std::clamp(position, found->second.first, found->second.second);
-  }
   const FunctionSpec& function(ErrorSymbol symbol) const {
     const auto found = functions.find(symbol);
     return found == functions.end() ? default_function : found->second;

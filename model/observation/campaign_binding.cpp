@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/measured_ends.h"
 #include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
@@ -295,9 +296,9 @@ class CampaignBinder {
   Campaign held_campaign() const {
     Campaign held = campaign_;
     for (Setup& setup : held.setups) {
-      for (const auto& [axis, ends] : spec_.measured) {
-        for (double& position : setup.readings.position[index_of(axis)])
-          position = spec_.held(axis, position);
+      for (const auto& [axis, stated] : spec_.measured) {
+        const MeasuredEnds ends = measured_ends(campaign_.machine.axis(axis), spec_);
+        for (double& position : setup.readings.position[index_of(axis)]) position = ends.nearest(position);
       }
     }
     return held;

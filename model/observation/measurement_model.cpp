@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/measured_ends.h"
 
 namespace volcal {
 
@@ -67,7 +68,8 @@ PoseErrors<double> MeasurementModel::errors_at(const AxisPosition& position,
                                                const Eigen::VectorXd& parameters) const {
   AxisPosition held = position;
   for (const auto& [axis, ends] : spec_.measured)
-    held[index_of(axis)] = spec_.held(axis, position[index_of(axis)]);
+    held[index_of(axis)] =
+        measured_ends(campaign_.machine.axis(axis), spec_).nearest(position[index_of(axis)]);
   return pose_errors(layout(), held, parameters);
 }
 

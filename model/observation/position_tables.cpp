@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "volcal/model/description/measured_ends.h"
+
 namespace volcal {
 namespace {
 
@@ -59,6 +61,7 @@ PositionTables::PositionTables(const Campaign& campaign, const ParameterLayout& 
   for (const AxisName axis : kAllAxes) {
     const auto on_axis = [axis](const FunctionGroup& group) { return group.axis == axis; };
     if (std::ranges::none_of(layout.groups, on_axis)) continue;
+    const MeasuredEnds ends = measured_ends(campaign.machine.axis(axis), model);
     PositionNumbers numbers;
     for (std::size_t setup = 0; setup < campaign.setups.size(); ++setup) {
       const std::vector<double>& positions = campaign.setups[setup].readings.position[index_of(axis)];
@@ -72,7 +75,7 @@ PositionTables::PositionTables(const Campaign& campaign, const ParameterLayout& 
       const auto support = static_cast<std::size_t>(group.basis->support());
       tables_[g].values.resize(support * numbers.positions().size());
       for (std::size_t i = 0; i < numbers.positions().size(); ++i) {
-        tables_[g].start.push_back(group.basis->evaluate(model.held(axis, numbers.positions()[i]),
+        tables_[g].start.push_back(group.basis->evaluate(ends.nearest(numbers.positions()[i]),
                                                          tables_[g].values.data() + support * i));
       }
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "volcal/sim/known/known_spline.h"
@@ -57,6 +58,27 @@ ErrorFunction known_function(const FunctionSpec& spec, ErrorSymbol symbol, const
       "state it in one of bspline, legendre, fourier, or as tables (volcal tables --format csv)");
 }
 
+/// Whether errors state one value for positions a turn apart: series, and polylines that close after a turn.
+bool turns_round(const ModelSpec& errors, const Axis& axis) {
+  constexpr double kTurn = 2.0 * std::numbers::pi, kSameEnd = 1e-9;
+  if (!is_rotary(axis.name) || axis.travel_max - axis.travel_min < kTurn - 1e-6) return false;
+  int series = 0, closed = 0, others = 0;
+  for (const auto& [symbol, spec] : errors.functions) {
+    if (symbol.axis != axis.name || spec.coefficients.empty()) continue;
+    if (spec.basis == "fourier") {
+      ++series;
+    } else if (spec.basis == "bspline" && spec.degree == 1 && spec.breakpoints.size() > 1) {
+      const double turns = (spec.breakpoints.back() - spec.breakpoints.front()) / kTurn;
+      const bool whole = turns > 0.5 && std::abs(turns - std::round(turns)) * kTurn < kSameEnd;
+      const double gap = std::abs(spec.coefficients.back() - spec.coefficients.front());
+      ++(whole && gap < kSameEnd ? closed : others);
+    } else {
+      ++others;
+    }
+  }
+  return others == 0 && series + closed > 0;
+}
+
 }  // namespace
 
 void set_known_functions(const std::map<ErrorSymbol, FunctionSpec>& functions, const std::string& file,
@@ -70,7 +92,8 @@ void set_known_functions(const std::map<ErrorSymbol, FunctionSpec>& functions, c
 void set_known_errors(const ModelSpec& errors, TruthMachine& truth) {
   set_known_functions(errors.functions, errors.file, truth);
   for (const auto& [symbol, value] : errors.locations) truth.set_location(symbol, value);
-  for (const auto& [axis, ends] : errors.measured) truth.hold_beyond(axis, ends.first, ends.second);
+  for (const auto& [axis, ends] : errors.measured)
+    truth.hold_beyond(axis, ends.first, ends.second, turns_round(errors, truth.machine().axis(axis)));
 }
 
 }  // namespace volcal::sim

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -87,15 +88,31 @@ void TruthMachine::set_scale_expansion(AxisName axis, double per_kelvin, const s
   });
 }
 
-void TruthMachine::hold_beyond(AxisName axis, double first, double last) {
-  measured_[machine_.axis(axis).name] = {first, last};
+void TruthMachine::hold_beyond(AxisName axis, double first, double last, bool round) {
+  measured_[machine_.axis(axis).name] = {first, last, round};
+}
+
+double TruthMachine::MeasuredPart::nearest(double position) const {
+  if (position >= first && position <= last) return position;
+  double best = std::clamp(position, first, last);
+  if (!round) return best;
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  double way = std::abs(position - best);
+  const int turns = 1 + static_cast<int>(way / kTurn);
+  for (int k = -turns; k <= turns; ++k) {
+    const double same = position + k * kTurn, held = std::clamp(same, first, last);
+    if (std::abs(same - held) >= way) continue;
+    best = held;
+    way = std::abs(same - held);
+  }
+  return best;
 }
 
 MachineState TruthMachine::held(const MachineState& state) const {
   MachineState at = state;
-  for (const auto& [axis, ends] : measured_) {
+  for (const auto& [axis, part] : measured_) {
     double& position = at.position[index_of(axis)];
-    position = std::clamp(position, ends.first, ends.second);
+    position = part.nearest(position);
   }
   return at;
 }

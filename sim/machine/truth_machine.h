@@ -87,7 +87,8 @@ class TruthMachine {
   /// channel throws std::invalid_argument.
   void set_scale_expansion(AxisName axis, double per_kelvin, const std::string& channel);
   /// Beyond these positions functions and state errors, expansions of scales apart, keep their last value.
-  void hold_beyond(AxisName axis, double first, double last);
+  /// `round`: the nearest of these positions on the circle.
+  void hold_beyond(AxisName axis, double first, double last, bool round);
   /// Anything else that an error motion depends on.
   void add_state_error(ErrorSymbol symbol, StateError error);
   /// A location error that changes; symbols as in set_location(). It adds to location().
@@ -129,6 +130,12 @@ class TruthMachine {
 
  private:
   enum class Side { Workpiece, Tool, Both };
+  /// Of an axis, m or rad.
+  struct MeasuredPart {
+    double first = 0.0, last = 0.0;
+    bool round = false;
+    double nearest(double position) const;
+  };
   MachineState corrected(const MachineState& state) const;
   MachineState held(const MachineState& state) const;
   /// `at`: the state within what was measured.
@@ -144,7 +151,7 @@ class TruthMachine {
   std::map<ErrorSymbol, double> reversals_;
   std::map<ErrorSymbol, std::vector<StateError>> state_errors_;
   std::map<ErrorSymbol, std::vector<StateError>> expansions_;
-  std::map<AxisName, std::pair<double, double>> measured_;
+  std::map<AxisName, MeasuredPart> measured_;
   std::map<LocationSymbol, double> locations_;
   std::map<LocationSymbol, std::vector<StateError>> location_changes_;
   CommandCorrection correction_;

@@ -110,18 +110,37 @@ ApproachDirection approach_of(const Machine& machine, const std::string& text) {
   return direction;
 }
 
+/// `at`: the point as it was typed.
+[[noreturn]] void refuse_extrapolated(const std::string& at, const Machine& machine,
+                                      const MeasuredTravel& measured, const AxisPosition& position) {
+  std::string why = "a curve or surface of the model was drawn from readings elsewhere";
+  for (const Axis& axis : machine.axes) {
+    const double q = position[index_of(axis.name)];
+    const MeasuredEnds& ends = measured[axis.name];
+    if (!ends.is_beyond(q)) continue;
+    const Unit unit = position_unit(axis.name);
+    why = fmt::format("{} at {:.6g} {} lies beyond the readings, {:.6g} to {:.6g} {}", letter_of(axis.name),
+                      q / unit.si_per_unit, unit.suffix, ends.first / unit.si_per_unit,
+                      ends.last / unit.si_per_unit, unit.suffix);
+    break;
+  }
+  throw InputError({}, "--no-extrapolation: --at " + at + ": " + why,
+                   "name a point within the readings, or leave the option out");
+}
+
 std::vector<VolumetricError> errors_at_points(const FitResult& result, const TablesArguments& arguments) {
   std::vector<VolumetricError> errors;
   const Conditions conditions = conditions_of(result, arguments.conditions);
   const ApproachDirection direction = approach_of(result.machine, arguments.approach);
   for (const Tool& tool : chosen_tools(result.machine, arguments.tool)) {
     const ErrorField field(result, tool, conditions);
+    const std::size_t first = errors.size();
     for (const AxisPosition& position : points_of(result, arguments)) {
       require_identified_rotary_axes(result, position);
       errors.push_back(volumetric_error(result, field, position, tool, direction));
       if (arguments.conditions.no_extrapolation && errors.back().extrapolated)
-        throw InputError({}, "--no-extrapolation: a point of --at lies beyond the readings",
-                         "name a point within them, or leave the option out");
+        refuse_extrapolated(arguments.at[errors.size() - 1 - first], result.machine, field.measured(),
+                            position);
     }
   }
   return errors;

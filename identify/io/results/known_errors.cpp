@@ -31,11 +31,13 @@ struct ErrorRows {
 };
 
 TableFile table_file(const std::filesystem::path& folder, const char* name) {
-  return {name, read_text_file((folder / name).string())};
+  const std::string path = (folder / name).string();
+  return {path, read_text_file(path)};
 }
 
 /// Half the difference of the directions as b0 + b1 (q - home).
-void add_reversal(ErrorSymbol symbol, const ErrorRows& rows, double home, ModelSpec& model) {
+void add_reversal(ErrorSymbol symbol, const ErrorRows& rows, double home, const std::string& file,
+                  ModelSpec& model) {
   double count = 0.0, q_sum = 0.0, b_sum = 0.0;
   for (const auto& [q, value] : rows.forward) {
     count += 1.0;
@@ -52,7 +54,7 @@ void add_reversal(ErrorSymbol symbol, const ErrorRows& rows, double home, ModelS
   const double at_home = b_sum / count - slope * q_sum / count;
   for (const auto& [q, value] : rows.forward) {
     if (std::abs(value - rows.backward.at(q) - at_home - slope * (q - home)) < kSameReversal) continue;
-    throw InputError({kErrorTables, 0},
+    throw InputError({file, 0},
                      symbol.name() +
                          ": the directions of approach differ by more than a reversal that changes "
                          "in proportion to the position",
@@ -65,9 +67,9 @@ void add_reversal(ErrorSymbol symbol, const ErrorRows& rows, double home, ModelS
         effect_spec("position-reversal", {{"symbol", symbol.name()}, {"amplitude", slope}}));
 }
 
-void add_function(ErrorSymbol symbol, const ErrorRows& rows, ModelSpec& model) {
+void add_function(ErrorSymbol symbol, const ErrorRows& rows, const std::string& file, ModelSpec& model) {
   if (rows.forward.size() < 2 || rows.forward.size() != rows.backward.size())
-    throw InputError({kErrorTables, 0}, symbol.name() + " has less than two positions in a direction",
+    throw InputError({file, 0}, symbol.name() + " has less than two positions in a direction",
                      "give both directions at the same positions, or direction 0 alone");
   FunctionSpec& spec = model.functions[symbol];
   spec.basis = "bspline";
@@ -76,7 +78,7 @@ void add_function(ErrorSymbol symbol, const ErrorRows& rows, ModelSpec& model) {
   for (const auto& [q, value] : rows.forward) {
     const auto other = rows.backward.find(q);
     if (other == rows.backward.end())
-      throw InputError({kErrorTables, 0}, symbol.name() + " has other positions in the two directions",
+      throw InputError({file, 0}, symbol.name() + " has other positions in the two directions",
                        "give both directions at the same positions, or direction 0 alone");
     spec.breakpoints.push_back(q);
     spec.coefficients.push_back(0.5 * (value + other->second));
@@ -123,8 +125,8 @@ FitResult result_of_tables(const std::filesystem::path& folder) {
   model.default_function.basis = "zero";
   std::map<ErrorSymbol, ErrorRows> functions;
   MeasuredRows measured;
-  for (const ErrorTableRow& row :
-       read_function_table(table_file(folder, kErrorTables), TableContent::Errors)) {
+  const TableFile errors = table_file(folder, kErrorTables);
+  for (const ErrorTableRow& row : read_function_table(errors, TableContent::Errors)) {
     if (const auto location = row.symbol.location()) model.locations[*location] = row.value;
     const auto symbol = row.symbol.motion();
     if (!symbol) continue;
@@ -134,10 +136,10 @@ FitResult result_of_tables(const std::filesystem::path& folder) {
   }
   for (const auto& [symbol, rows] : functions) {
     if (!metadata.machine.has_axis(symbol.axis))
-      throw InputError({kErrorTables, 0}, symbol.name() + " belongs to an axis that the machine lacks",
+      throw InputError({errors.name, 0}, symbol.name() + " belongs to an axis that the machine lacks",
                        "take metadata.csv of the same run");
-    add_function(symbol, rows, model);
-    add_reversal(symbol, rows, metadata.machine.axis(symbol.axis).home, model);
+    add_function(symbol, rows, errors.name, model);
+    add_reversal(symbol, rows, metadata.machine.axis(symbol.axis).home, errors.name, model);
   }
   model.measured = metadata.measured.empty() ? measured.ranges() : metadata.measured;
   model.conditions = metadata.conditions;

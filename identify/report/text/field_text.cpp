@@ -11,6 +11,7 @@
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/description/variable.h"
 
 namespace volcal {
@@ -49,8 +50,11 @@ nlohmann::ordered_json conditions_json(const FitResult& result, const Conditions
 void require_within_readings(const FitResult& result, const Conditions& conditions) {
   const std::vector<Finding> unmeasured = unmeasured_travel(result);
   if (!unmeasured.empty()) {
+    const AxisName axis = axis_from_letter(unmeasured.front().text("axis").front()).value();
     throw InputError({}, "--no-extrapolation: " + sentence(unmeasured.front()),
-                     "measure the whole travel, set travel_mm to what was measured, or leave the option out");
+                     fmt::format("measure the whole travel, set travel_{} of [axes.{}] to what was measured, "
+                                 "or leave the option out",
+                                 position_unit(axis).suffix, letter_of(axis)));
   }
   require_conditions_of_readings(result, conditions);
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "volcal/model/description/measured_ends.h"
 #include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/variable.h"
@@ -107,6 +108,10 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model) {
   result.reference_temperature_degC = kReferenceTemperature_degC;
   StatedLayout(machine, model).take(result);
   for (const auto& [axis, ends] : model.measured) {
+    if (stood_still(axis, model)) {
+      result.standing[axis] = ends.first;
+      continue;
+    }
     FunctionSummary& summary = result.functions.emplace_back();
     summary.symbol = {Component::X, axis};
     summary.measured_min = ends.first;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/program/program_header.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
@@ -164,10 +165,12 @@ void TcpRewriter::set_target(const TcpWords& words) {
     if (is_rotary(axis)) {
       if (given) to_.rotary[direction_of(axis)] = words.of(letter_of(axis)) * kRadianPerDegree;
       rotary_known_[k] = rotary_known_[k] || given;
-      if (!options_.identified[k] && to_.rotary[direction_of(axis)] != 0.0)
-        place().refuse(fmt::format("the errors of axis {} were not identified, and it does not stand at 0",
-                                   letter_of(axis)),
-                       "measure with the axis turned, and fit");
+      if (!options_.identified[k] &&
+          !stands_at_reference(to_.rotary[direction_of(axis)], options_.reference[k]))
+        place().refuse(
+            fmt::format("the errors of axis {} were not identified, and it does not stand at {:g} deg",
+                        letter_of(axis), options_.reference[k] / kRadianPerDegree),
+            "measure with the axis turned, and fit");
     } else {
       if (given)
         to_.point_w[direction_of(axis)] = zero[direction_of(axis)] + words.of(letter_of(axis)) * unit_;

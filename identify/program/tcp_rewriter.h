@@ -36,7 +36,8 @@ struct TcpRewriteOptions {
   int decimals_deg = 5;       ///< of rotary positions
   bool orientation = false;   ///< FOR
   bool check = false;         ///< fill the figures of errors along the path
-  std::array<bool, 3> identified = {true, true, true};  ///< errors of A, B, C; others must stay at 0
+  std::array<bool, 3> identified = {true, true, true};  ///< errors of A, B, C
+  std::array<double, 3> reference = {0.0, 0.0, 0.0};    ///< where those not identified must stay, rad
   std::optional<MeasuredTravel> measured;  ///< beyond it errors are held; nothing = not looked at
   bool within_readings = false;            ///< refuse motions beyond it
   std::vector<std::string> header;         ///< lines above the program (program_header.h); empty = none

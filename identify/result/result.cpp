@@ -1,6 +1,7 @@
 #include "volcal/identify/result/result.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/parameter_names.h"
@@ -80,6 +81,10 @@ ModelSpec model_of_result(const FitResult& result) {
     const Axis& travel = result.machine.axis(axis);
     if (ends.first > travel.travel_min + kSameEnd || ends.second < travel.travel_max - kSameEnd)
       model.measured[axis] = ends;
+  }
+  for (const auto& [axis, position] : result.standing) {
+    if (std::abs(position - result.machine.axis(axis).home) > kSameEnd)
+      model.measured.emplace(axis, std::pair(position, position));
   }
   return model;
 }

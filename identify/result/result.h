@@ -141,8 +141,9 @@ struct FitResult {
   double reference_temperature_degC = kReferenceTemperature_degC;
   bool temperature_is_campaign_mean = false;
   RecordedConditions conditions;
-  std::string active_compensations;  ///< while the campaign was measured, in words; empty = not stated
-  std::string alignment;             ///< frame that it was turned to (alignment.h); empty = the fit's own
+  std::string active_compensations;     ///< while the campaign was measured, in words; empty = not stated
+  std::map<AxisName, double> standing;  ///< where rotary axes stood that did not move, rad
+  std::string alignment;                ///< frame that it was turned to (alignment.h); empty = the fit's own
 
   double sigma0 = 0.0;  ///< sqrt(chi2 / dof) with the stated sigma
   double chi2 = 0.0;

@@ -427,9 +427,9 @@ class Identification {
     result_.identified = identified_model(spec_, model_.layout(), parameters_);
     summarise_temperature(campaign_, result_);
     result_.conditions = recorded_conditions(campaign_);
-    if (options_.noise == NoisePolicy::Automatic && options_.loss != RobustLoss::None) {
+    result_.standing = standing_rotary_axes(campaign_);
+    if (options_.noise == NoisePolicy::Automatic && options_.loss != RobustLoss::None)
       result_.findings.push_back({FindingCode::NoiseTakenAsIndependent});
-    }
     judge(model_, {converged_, rank_.deficient}, result_);
   }
 

@@ -101,9 +101,10 @@ std::string rotary_partly_in_tables(const Finding& finding) {
 std::string rotary_unknown_to_tables(const Finding& finding) {
   const std::string& axis = finding.text("axis");
   return fmt::format(
-      "errors of axis {} were not identified: the tables hold with {} at 0, and what {} does elsewhere is in "
-      "none of these figures; measure with {} in several positions",
-      axis, axis, axis, axis);
+      "errors of axis {} were not identified: the tables hold with {} at {:.6g} deg, and what {} does "
+      "elsewhere "
+      "is in none of these figures; measure with {} in several positions",
+      axis, axis, finding.number("position").in_unit() + 0.0, axis, axis);
 }
 
 std::string levers_of_tilted_head(const Finding& finding) {

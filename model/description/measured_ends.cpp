@@ -7,15 +7,15 @@
 namespace volcal {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kEdge = 1e-6;       // m or rad
-constexpr double kSameAngle = 1e-9;  // rad
-constexpr double kSameValue = 1e-9;  // m or rad: nine decimals of um or urad stand in tables
+constexpr double kWholeTurn = 2.0 * std::numbers::pi;
+constexpr double kEdge = 1e-6;           // m or rad
+constexpr double kSameAngle = 1e-9;      // rad
+constexpr double kRepeatedValue = 1e-9;  // m or rad: nine decimals of um or urad stand in tables
 
 /// By whole turns to where it is nearest to the middle of first and last.
 double turned(double position, const MeasuredEnds& ends) {
   if (!ends.goes_round) return position;
-  return position - kTurn * std::round((position - 0.5 * (ends.first + ends.last)) / kTurn);
+  return position - kWholeTurn * std::round((position - 0.5 * (ends.first + ends.last)) / kWholeTurn);
 }
 
 bool repeats_after_a_turn(const FunctionSpec& function) {
@@ -24,8 +24,8 @@ bool repeats_after_a_turn(const FunctionSpec& function) {
       function.basis == "bspline" && function.degree == 1 && function.breakpoints.size() >= 2;
   if (!is_polyline) return false;
   const double length = function.breakpoints.back() - function.breakpoints.front();
-  return length > kTurn - kSameAngle && std::abs(std::remainder(length, kTurn)) < kSameAngle &&
-         std::abs(function.coefficients.back() - function.coefficients.front()) < kSameValue;
+  return length > kWholeTurn - kSameAngle && std::abs(std::remainder(length, kWholeTurn)) < kSameAngle &&
+         std::abs(function.coefficients.back() - function.coefficients.front()) < kRepeatedValue;
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ bool MeasuredEnds::is_beyond(double position) const {
 }
 
 bool MeasuredEnds::cover(const Axis& axis) const {
-  if (goes_round && last - first >= kTurn - kEdge) return true;
+  if (goes_round && last - first >= kWholeTurn - kEdge) return true;
   return first <= axis.travel_min + kEdge && last >= axis.travel_max - kEdge;
 }
 
@@ -57,9 +57,18 @@ bool goes_round(const Axis& axis, const ModelSpec& model) {
   return has_functions;
 }
 
+bool stood_still(AxisName axis, const ModelSpec& model) {
+  const auto found = model.measured.find(axis);
+  if (!is_rotary(axis) || found == model.measured.end()) return false;
+  const bool has_functions = std::ranges::any_of(model.functions, [axis](const auto& entry) {
+    return entry.first.axis == axis && !entry.second.coefficients.empty();
+  });
+  return found->second.first == found->second.second && !has_functions;
+}
+
 MeasuredEnds measured_ends(const Axis& axis, const ModelSpec& model) {
   const auto found = model.measured.find(axis.name);
-  if (found == model.measured.end()) return {};
+  if (found == model.measured.end() || stood_still(axis.name, model)) return {};
   return {found->second.first, found->second.second, goes_round(axis, model)};
 }
 

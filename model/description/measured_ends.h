@@ -28,7 +28,10 @@ struct MeasuredEnds {
 /// with.
 bool goes_round(const Axis& axis, const ModelSpec& model);
 
-/// Of an axis in a model that states what was measured.
+/// Whether readings were at one position of a rotary axis of which the model has no error motions.
+bool stood_still(AxisName axis, const ModelSpec& model);
+
+/// Of an axis in a model that states what was measured; without ends where it stood still.
 MeasuredEnds measured_ends(const Axis& axis, const ModelSpec& model);
 
 }  // namespace volcal

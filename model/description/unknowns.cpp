@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace volcal {
 namespace {
@@ -10,8 +11,8 @@ namespace {
 constexpr double kNearlyAFullTurn = 350.0 / 180.0 * std::numbers::pi;
 constexpr double kLeastMoved = 1e-3;  // of the travel
 
-/// Difference of the largest and the least position of readings that are not left out.
-double measured_travel(const Campaign& campaign, AxisName axis) {
+/// Least and largest position of readings that are not left out.
+std::pair<double, double> measured_ends_of(const Campaign& campaign, AxisName axis) {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const Setup& setup : campaign.setups) {
     const std::vector<bool> left_out = setup.rows_left_out();
@@ -22,7 +23,11 @@ double measured_travel(const Campaign& campaign, AxisName axis) {
       most = std::max(most, position[row]);
     }
   }
-  return most - least;
+  return {least, most};
+}
+
+bool moves(const std::pair<double, double>& ends, const Axis& axis) {
+  return ends.second - ends.first > kLeastMoved * axis.travel();
 }
 
 void add_motions(AxisName axis, std::vector<ErrorSymbol>& symbols) {
@@ -79,10 +84,21 @@ FunctionSpec usual_function(const Axis& axis) {
 std::vector<AxisName> moving_rotary_axes(const Campaign& campaign) {
   std::vector<AxisName> moving;
   for (const Axis& axis : campaign.machine.axes) {
-    if (is_rotary(axis.name) && measured_travel(campaign, axis.name) > kLeastMoved * axis.travel())
+    if (is_rotary(axis.name) && moves(measured_ends_of(campaign, axis.name), axis))
       moving.push_back(axis.name);
   }
   return moving;
+}
+
+std::map<AxisName, double> standing_rotary_axes(const Campaign& campaign) {
+  std::map<AxisName, double> standing;
+  for (const Axis& axis : campaign.machine.axes) {
+    if (!is_rotary(axis.name)) continue;
+    const std::pair<double, double> ends = measured_ends_of(campaign, axis.name);
+    if (ends.first <= ends.second && !moves(ends, axis))
+      standing[axis.name] = 0.5 * (ends.first + ends.second);
+  }
+  return standing;
 }
 
 std::vector<AxisName> rotary_axes_without_errors(const Campaign& campaign, const ModelSpec& model) {

@@ -2,6 +2,7 @@
 /// Which errors of a machine are unknown, by its axes, its datum and what the model file says: the one place
 /// that decides it.
 
+#include <map>
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
@@ -24,6 +25,8 @@ std::vector<LocationSymbol> possible_locations(const Machine& machine);
 /// Rotary axes that the readings move by more than a thousandth of their travel; readings that are left out
 /// do not count.
 std::vector<AxisName> moving_rotary_axes(const Campaign& campaign);
+/// Where the other rotary axes stood, rad.
+std::map<AxisName, double> standing_rotary_axes(const Campaign& campaign);
 /// Rotary axes that the readings move and of which the model has neither an error motion nor a location.
 std::vector<AxisName> rotary_axes_without_errors(const Campaign& campaign, const ModelSpec& model);
 /// linear_axis_motions(), and the six error motions of every rotary axis that moves.

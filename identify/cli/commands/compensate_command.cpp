@@ -151,6 +151,8 @@ TcpRewriteOptions tcp_options(const FitResult& result, const CompensateArguments
   options.identified.fill(false);
   for (const AxisName axis : identified_rotary_axes(result))
     options.identified[static_cast<std::size_t>(direction_of(axis))] = true;
+  for (const AxisName axis : result.machine.rotary_axes())
+    options.reference[static_cast<std::size_t>(direction_of(axis))] = reference_of(result, axis);
   return options;
 }
 

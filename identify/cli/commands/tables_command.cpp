@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -89,9 +90,15 @@ std::vector<Tool> chosen_tools(const Machine& machine, const std::string& name) 
 }
 
 std::vector<AxisPosition> points_of(const FitResult& result, const TablesArguments& arguments) {
+  // A rotary axis that is not named and of which nothing was identified stands where its errors are known.
+  Machine machine = result.machine;
+  const std::vector<AxisName> identified = identified_rotary_axes(result);
+  for (Axis& axis : machine.axes) {
+    if (is_rotary(axis.name) && std::ranges::find(identified, axis.name) == identified.end())
+      axis.home = reference_of(result, axis.name);
+  }
   std::vector<AxisPosition> points;
-  for (const std::string& point : arguments.at)
-    points.push_back(axis_position("--at", point, result.machine));
+  for (const std::string& point : arguments.at) points.push_back(axis_position("--at", point, machine));
   return points;
 }
 

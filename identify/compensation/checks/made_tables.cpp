@@ -42,7 +42,9 @@ void report_unknown_axes(const FitResult& result, std::vector<Finding>& cautions
   for (const Axis& axis : result.machine.axes) {
     if (is_rotary(axis.name) && std::ranges::find(identified, axis.name) == identified.end())
       cautions.push_back(
-          {FindingCode::RotaryErrorsUnknownToTables, {{"axis", std::string(1, letter_of(axis.name))}}});
+          {FindingCode::RotaryErrorsUnknownToTables,
+           {{"axis", std::string(1, letter_of(axis.name))},
+            {"position", FindingNumber{reference_of(result, axis.name), "deg", kRadianPerDegree}}}});
   }
 }
 

@@ -3,9 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <sstream>
 
 #include "volcal/identify/errors/machine_effects.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/kinematics/rotary_datum.h"
 
 namespace volcal {
@@ -32,16 +36,34 @@ std::vector<AxisName> identified_rotary_axes(const FitResult& result) {
   return axes;
 }
 
+double reference_of(const FitResult& result, AxisName axis) {
+  const auto stood = result.standing.find(axis);
+  return stood == result.standing.end() ? result.machine.axis(axis).home : stood->second;
+}
+
+bool stands_at_reference(double position, double reference) {
+  constexpr double kSameReference = 1e-4;  // rad
+  return std::abs(std::remainder(position - reference, 2.0 * std::numbers::pi)) < kSameReference;
+}
+
+std::string reference_text(const FitResult& result, AxisName axis) {
+  std::ostringstream text;
+  text << letter_of(axis) << " at " << reference_of(result, axis) / kRadianPerDegree << " deg";
+  return text.str();
+}
+
 void require_identified_rotary_axes(const FitResult& result, const AxisPosition& position) {
   const std::vector<AxisName> identified = identified_rotary_axes(result);
   for (const Axis& axis : result.machine.axes) {
-    if (!is_rotary(axis.name) || position[index_of(axis.name)] == 0.0) continue;
+    if (!is_rotary(axis.name) ||
+        stands_at_reference(position[index_of(axis.name)], reference_of(result, axis.name)))
+      continue;
     if (std::ranges::find(identified, axis.name) != identified.end()) continue;
     throw InputError({},
                      std::string("the errors of axis ") + letter_of(axis.name) +
                          " were not identified, and the pose turns it",
-                     std::string("leave ") + letter_of(axis.name) +
-                         " at 0, or identify its errors: name its functions and locations in the model file "
+                     "leave " + reference_text(result, axis.name) +
+                         ", or identify its errors: name its functions and locations in the model file "
                          "and measure with the axis in several positions");
   }
 }

@@ -2,6 +2,7 @@
 /// Rotary axes of an identified machine: which were identified, and where their average lines lie.
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "volcal/identify/errors/pose.h"
@@ -13,7 +14,15 @@ namespace volcal {
 /// depends on their position, A B C.
 std::vector<AxisName> identified_rotary_axes(const FitResult& result);
 
-/// Throws InputError where a rotary axis stands away from 0 whose errors were not identified.
+/// Where a rotary axis stands as far as a result knows its errors that were not identified, rad: what they
+/// add there is in the errors of the others. Where it stood in the campaign; at home where that is not known.
+double reference_of(const FitResult& result, AxisName axis);
+/// Whether an axis of which nothing was identified stands there, or whole turns from there, to 0.006 deg.
+bool stands_at_reference(double position, double reference);
+/// "C at 90 deg"
+std::string reference_text(const FitResult& result, AxisName axis);
+
+/// Throws InputError where a rotary axis stands away from its reference whose errors were not identified.
 void require_identified_rotary_axes(const FitResult& result, const AxisPosition& position);
 
 /// Poses spread evenly over the travel of all axes, of a rotary axis over a turn at most.

@@ -244,6 +244,17 @@ std::vector<Finding> findings_beside(const Json& json, const std::string& key, c
   return findings_from(value_or_null(json, codes), json.at(key).get<std::vector<std::string>>());
 }
 
+/// Absent where every rotary axis moved, and in results of older programs.
+void read_standing(const Json& json, FitResult& result) {
+  if (!json.contains("standing")) return;
+  for (const auto& [letter, position] : json.at("standing").items()) {
+    const auto axis = letter.size() == 1 ? axis_from_letter(letter[0]) : std::nullopt;
+    if (!axis || !is_rotary(*axis))
+      throw std::invalid_argument("\"" + printable(letter) + "\" is not a rotary axis");
+    result.standing[*axis] = number(position);
+  }
+}
+
 void read_head(const Json& json, FitResult& result) {
   result.status = status_from(json.at("status").get<std::string>());
   result.findings = findings_beside(json, "messages", "findings");
@@ -261,6 +272,7 @@ void read_head(const Json& json, FitResult& result) {
   if (json.contains("conditions")) result.conditions = conditions_from(json.at("conditions"));
   result.active_compensations = json.value("active_compensations", std::string());
   result.alignment = json.value("alignment", std::string());
+  read_standing(json, result);
   for (const Json& setup : json.at("setups")) {
     result.setups.push_back({.name = setup.at("name").get<std::string>(),
                              .instrument = setup.at("instrument").get<std::string>(),
@@ -349,6 +361,8 @@ FitResult result_from(const Json& json) {
 
 std::string result_json(const FitResult& result) {
   Json json = head_json(result);
+  for (const auto& [axis, position] : result.standing)
+    json["standing"][std::string(1, letter_of(axis))] = number(position);
   json["timings"] = timings_json(result);
   json["machine"] = json_parts::machine(result.machine);
   json["model"] = json_parts::model(result.identified);

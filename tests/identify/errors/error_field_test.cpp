@@ -24,6 +24,7 @@
 #include "volcal/identify/program/program_errors.h"
 #include "volcal/identify/report/values/volume_error.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/measurement_model.h"
 
@@ -326,6 +327,25 @@ TEST(ErrorField, HoldsTheLastMeasuredErrorBeyondTheReadings) {
   const VolumetricError free = volumetric_error(without, ErrorField(without, tool, {}), beyond, tool);
   EXPECT_TRUE(stated.extrapolated);
   for (int k = 0; k < 6; ++k) EXPECT_GE(stated.u[k], 0.999 * free.u[k]);
+}
+
+/// A campaign with C at 90 deg knows what C does there alone, whatever its home; 450 deg is the same place.
+TEST(ErrorField, TakesAnUnidentifiedRotaryAxisWhereItStood) {
+  FitResult result;
+  result.machine = testing_support::machine_of("wC'X'bYZt");
+  AxisPosition position{};
+  const auto c_at = [&position](double deg) {
+    position[index_of(AxisName::C)] = deg * kRadianPerDegree;
+    return position;
+  };
+  std::ranges::find(result.machine.axes, AxisName::C, &Axis::name)->home = 30.0 * kRadianPerDegree;
+  EXPECT_NO_THROW(require_identified_rotary_axes(result, c_at(30.0))) << "home, where nothing else is known";
+  result.standing[AxisName::C] = 90.0 * kRadianPerDegree;
+  EXPECT_NO_THROW(require_identified_rotary_axes(result, c_at(90.0)));
+  EXPECT_NO_THROW(require_identified_rotary_axes(result, c_at(450.0)));
+  EXPECT_EQ(reference_text(result, AxisName::C), "C at 90 deg");
+  for (const double elsewhere : {0.0, 30.0, 90.1})
+    EXPECT_THROW(require_identified_rotary_axes(result, c_at(elsewhere)), InputError) << elsewhere;
 }
 
 TEST(ErrorField, RefusesARotaryPoseWithoutRotaryErrors) {

@@ -1,6 +1,7 @@
 // Figures of ISO 230, errors and tables.
 
 #include "tests/identify/words/finding_examples.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 
@@ -93,9 +94,10 @@ std::vector<WordedFinding> examples_of_errors() {
        "0"},
       {{FindingCode::RotaryErrorsPartlyInTables, {{"axis", "C"}, {"type", "R-POS"}}},
        "the tables hold only R-POS of the errors of axis C"},
-      {{FindingCode::RotaryErrorsUnknownToTables, {{"axis", "C"}}},
-       "errors of axis C were not identified: the tables hold with C at 0, and what C does elsewhere is in "
-       "none of these figures; measure with C in several positions"},
+      {{FindingCode::RotaryErrorsUnknownToTables,
+        {{"axis", "C"}, {"position", FindingNumber{90.0 * kRadianPerDegree, "deg", kRadianPerDegree}}}},
+       "errors of axis C were not identified: the tables hold with C at 90 deg, and what C does elsewhere is "
+       "in none of these figures; measure with C in several positions"},
       {{FindingCode::LeversOfTiltedHead,
         {{"axes", "CB"},
          {"rms", FindingNumber{1.9e-6, "um", 1e-6}},

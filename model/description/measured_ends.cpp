@@ -7,7 +7,7 @@
 namespace volcal {
 namespace {
 
-constexpr double kWholeTurn = 2.0 * std::numbers::pi;
+constexpr double kTurnOfCircle = 2.0 * std::numbers::pi;
 constexpr double kEdge = 1e-6;           // m or rad
 constexpr double kSameAngle = 1e-9;      // rad
 constexpr double kRepeatedValue = 1e-9;  // m or rad: nine decimals of um or urad stand in tables
@@ -15,7 +15,7 @@ constexpr double kRepeatedValue = 1e-9;  // m or rad: nine decimals of um or ura
 /// By whole turns to where it is nearest to the middle of first and last.
 double turned(double position, const MeasuredEnds& ends) {
   if (!ends.goes_round) return position;
-  return position - kWholeTurn * std::round((position - 0.5 * (ends.first + ends.last)) / kWholeTurn);
+  return position - kTurnOfCircle * std::round((position - 0.5 * (ends.first + ends.last)) / kTurnOfCircle);
 }
 
 bool repeats_after_a_turn(const FunctionSpec& function) {
@@ -24,7 +24,8 @@ bool repeats_after_a_turn(const FunctionSpec& function) {
       function.basis == "bspline" && function.degree == 1 && function.breakpoints.size() >= 2;
   if (!is_polyline) return false;
   const double length = function.breakpoints.back() - function.breakpoints.front();
-  return length > kWholeTurn - kSameAngle && std::abs(std::remainder(length, kWholeTurn)) < kSameAngle &&
+  return length > kTurnOfCircle - kSameAngle &&
+         std::abs(std::remainder(length, kTurnOfCircle)) < kSameAngle &&
          std::abs(function.coefficients.back() - function.coefficients.front()) < kRepeatedValue;
 }
 
@@ -42,7 +43,7 @@ bool MeasuredEnds::is_beyond(double position) const {
 }
 
 bool MeasuredEnds::cover(const Axis& axis) const {
-  if (goes_round && last - first >= kWholeTurn - kEdge) return true;
+  if (goes_round && last - first >= kTurnOfCircle - kEdge) return true;
   return first <= axis.travel_min + kEdge && last >= axis.travel_max - kEdge;
 }
 

@@ -9,13 +9,13 @@
 namespace volcal {
 namespace {
 
-constexpr double kOneDegree = kRadianPerDegree;
+constexpr double kDegreeOfC = kRadianPerDegree;
 
 Axis c_axis(double first_deg, double last_deg) {
   Axis axis;
   axis.name = AxisName::C;
-  axis.travel_min = first_deg * kOneDegree;
-  axis.travel_max = last_deg * kOneDegree;
+  axis.travel_min = first_deg * kDegreeOfC;
+  axis.travel_max = last_deg * kDegreeOfC;
   return axis;
 }
 
@@ -30,7 +30,7 @@ FunctionSpec series() {
 FunctionSpec polyline(double last) {
   FunctionSpec spec;
   spec.degree = 1;
-  spec.breakpoints = {0.0, 180.0 * kOneDegree, 360.0 * kOneDegree};
+  spec.breakpoints = {0.0, 180.0 * kDegreeOfC, 360.0 * kDegreeOfC};
   spec.coefficients = {1e-6, 3e-6, last};
   return spec;
 }
@@ -38,12 +38,12 @@ FunctionSpec polyline(double last) {
 ModelSpec model_of(const FunctionSpec& function) {
   ModelSpec model;
   model.functions[{Component::X, AxisName::C}] = function;
-  model.measured[AxisName::C] = {0.0, 120.0 * kOneDegree};
+  model.measured[AxisName::C] = {0.0, 120.0 * kDegreeOfC};
   return model;
 }
 
 double held_deg(const MeasuredEnds& ends, double position_deg) {
-  return ends.nearest(position_deg * kOneDegree) / kOneDegree;
+  return ends.nearest(position_deg * kDegreeOfC) / kDegreeOfC;
 }
 
 // Measured 0 to 120 of 0 to 360: 240 is 120 away from either end, 230 is nearer to 120, 250 to 360 = 0.
@@ -59,10 +59,10 @@ TEST(MeasuredEnds, HoldTheNearestPositionOnTheCircle) {
                                        {430.0, 70.0},
                                        {-10.0, 0.0}})
     EXPECT_NEAR(held_deg(ends, position), held, 1e-9) << position;
-  EXPECT_FALSE(ends.is_beyond(360.0 * kOneDegree));
-  EXPECT_FALSE(ends.is_beyond(430.0 * kOneDegree));
-  EXPECT_TRUE(ends.is_beyond(350.0 * kOneDegree));
-  EXPECT_TRUE(ends.is_beyond(130.0 * kOneDegree));
+  EXPECT_FALSE(ends.is_beyond(360.0 * kDegreeOfC));
+  EXPECT_FALSE(ends.is_beyond(430.0 * kDegreeOfC));
+  EXPECT_TRUE(ends.is_beyond(350.0 * kDegreeOfC));
+  EXPECT_TRUE(ends.is_beyond(130.0 * kDegreeOfC));
 }
 
 TEST(MeasuredEnds, HoldTheEndWhereAnAxisDoesNotGoRound) {
@@ -70,7 +70,7 @@ TEST(MeasuredEnds, HoldTheEndWhereAnAxisDoesNotGoRound) {
                                    measured_ends(c_axis(0.0, 360.0), model_of(polyline(2e-6)))}) {
     EXPECT_FALSE(ends.goes_round);
     EXPECT_NEAR(held_deg(ends, 290.0), 120.0, 1e-9);
-    EXPECT_TRUE(ends.is_beyond(290.0 * kOneDegree));
+    EXPECT_TRUE(ends.is_beyond(290.0 * kDegreeOfC));
   }
   EXPECT_TRUE(measured_ends(c_axis(0.0, 360.0), model_of(polyline(1e-6))).goes_round);
 }
@@ -78,15 +78,26 @@ TEST(MeasuredEnds, HoldTheEndWhereAnAxisDoesNotGoRound) {
 // A whole turn that was measured covers any travel.
 TEST(MeasuredEnds, CoverTheTravelOnceATurnWasMeasured) {
   ModelSpec model = model_of(series());
-  model.measured[AxisName::C] = {-180.0 * kOneDegree, 180.0 * kOneDegree};
+  model.measured[AxisName::C] = {-180.0 * kDegreeOfC, 180.0 * kDegreeOfC};
   const Axis wide = c_axis(-200.0, 200.0);
   EXPECT_TRUE(measured_ends(wide, model).cover(wide));
   EXPECT_NEAR(held_deg(measured_ends(wide, model), 190.0), -170.0, 1e-9);
-  EXPECT_FALSE(measured_ends(wide, model).is_beyond(190.0 * kOneDegree));
+  EXPECT_FALSE(measured_ends(wide, model).is_beyond(190.0 * kDegreeOfC));
   model.functions[{Component::X, AxisName::C}] = polyline(2e-6);
   EXPECT_FALSE(measured_ends(wide, model).cover(wide));
   const Axis turn = c_axis(0.0, 360.0);
   EXPECT_FALSE(measured_ends(turn, model_of(series())).cover(turn));
+}
+
+/// [90, 90] says where an axis without error motions stood: nothing of it is held there.
+TEST(MeasuredEnds, AreNoneWhereAnAxisStoodStill) {
+  ModelSpec model;
+  model.measured[AxisName::C] = {1.5, 1.5};
+  EXPECT_TRUE(stood_still(AxisName::C, model));
+  EXPECT_FALSE(measured_ends(c_axis(0.0, 360.0), model).is_beyond(0.0));
+  model.functions[{Component::X, AxisName::C}] = series();
+  EXPECT_FALSE(stood_still(AxisName::C, model));
+  EXPECT_TRUE(measured_ends(c_axis(0.0, 360.0), model).is_beyond(0.0));
 }
 
 TEST(MeasuredEnds, AreNoneWhereNothingIsStated) {

@@ -9,6 +9,7 @@
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/quantity_groups.h"
 #include "volcal/identify/words/sentences.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
@@ -158,6 +159,20 @@ std::string verdict_text(const MonteCarloResult& result) {
   return text;
 }
 
+/// Of errors that can be exchanged: what switching them off would do to the fit.
+std::string free_combination_text(const std::vector<Finding>& invisible) {
+  std::vector<std::string> errors;
+  for (const Finding& finding : invisible) {
+    if (finding.code == FindingCode::NotVisibleExchangeable) errors.push_back(finding.text("error"));
+  }
+  if (errors.size() < 2) return "";
+  const std::string names = list_in_words(errors);
+  return "Only combinations of " + names +
+         " are free; the readings determine the rest of them. Do not switch " +
+         "them off in the model: the fit would lose what the readings determine. [priors] state how large " +
+         "errors are and do not make them visible.\n";
+}
+
 }  // namespace
 
 std::string montecarlo_text(const MonteCarloResult& result) {
@@ -169,11 +184,9 @@ std::string montecarlo_text(const MonteCarloResult& result) {
 }
 
 std::string undetermined_text(const FitResult& fit) {
-  const std::string text =
-      "Monte Carlo: nothing is drawn, the readings do not determine every error.\n" + rank_text(fit) + "\n";
-  return text + findings_text(fit.rank.invisible) +
-         "Do what is named here, or switch these errors off in the model (EAX = { basis = \"zero\" }, "
-         "EC0Y = \"zero\"), and draw again.\n";
+  return "Monte Carlo: nothing is drawn, the readings do not determine every error.\n" + rank_text(fit) +
+         "\n" + findings_text(fit.rank.invisible) + free_combination_text(fit.rank.invisible) +
+         "Measure what is named here and draw again.\n";
 }
 
 }  // namespace volcal

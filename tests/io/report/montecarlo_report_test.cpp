@@ -10,6 +10,8 @@
 #include "tests/support/machines.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/budget_text.h"
+#include "volcal/identify/report/text/montecarlo_text.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
@@ -129,6 +131,35 @@ TEST(MonteCarloReport, StudyWithoutTablesCanBeDrawn) {
   const test::Drawing drawing = test::draw_report(report_of(study));
   if (!drawing.possible) GTEST_SKIP() << "Node.js is not installed";
   EXPECT_EQ(drawing.exit_code, 0) << drawing.output;
+}
+
+Finding exchangeable(const std::string& error, const std::string& partner) {
+  return {FindingCode::NotVisibleExchangeable,
+          {{"error", error},
+           {"partners", std::vector<std::string>{partner}},
+           {"remedies", std::vector<std::string>{"other-lines"}}}};
+}
+
+TEST(UndeterminedText, SaysThatOnlyCombinationsAreFreeWithTheNamesOfTheCampaign) {
+  FitResult fit;
+  fit.rank.parameters = 10;
+  fit.rank.rank = 9;
+  fit.rank.invisible = {exchangeable("EYZ", "EA0Z"),
+                        exchangeable("EA0Z", "EYZ"),
+                        {FindingCode::NotVisibleNoReadingChanges, {{"error", std::string("EXX")}}}};
+  const std::string text = undetermined_text(fit);
+  EXPECT_THAT(text,
+              HasSubstr("\nOnly combinations of EYZ and EA0Z are free; the readings determine the rest of "
+                        "them. Do not switch them off in the model"));
+  EXPECT_THAT(text, ::testing::EndsWith("\nMeasure what is named here and draw again.\n"));
+}
+
+TEST(UndeterminedText, ErrorThatNoReadingSeesIsNoCombination) {
+  FitResult fit;
+  fit.rank.parameters = 10;
+  fit.rank.rank = 9;
+  fit.rank.invisible = {{FindingCode::NotVisibleNoReadingChanges, {{"error", std::string("EXX")}}}};
+  EXPECT_THAT(undetermined_text(fit), ::testing::Not(HasSubstr("combinations of")));
 }
 
 }  // namespace

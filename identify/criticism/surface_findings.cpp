@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "volcal/identify/criticism/formulas/formula_search.h"
+#include "volcal/identify/result/largest_value.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/functions/drawn_places.h"
@@ -86,10 +87,11 @@ class SurfaceSummary {
   SurfaceFinding run() {
     for (std::size_t k = 0; k < surface_.effect->amplitudes().size(); ++k)
       surface_.effect->amplitudes()[k].keep(coefficients_[static_cast<Eigen::Index>(k)], out_.spec.options);
-    find_size();
+    find_rms();
     const SmoothingTerm& term = state_.model().smoothing()[surface_.term];
     out_.figure.coefficients = coefficients_;
     out_.figure.covariance = covariance_of_coefficients();
+    find_largest();
     out_.effective_parameters =
         term.prior->rank - term.lambda * out_.figure.covariance.cwiseProduct(term.precision()).sum();
     if (!surface_.spec.options.text("factor")) {
@@ -120,10 +122,9 @@ class SurfaceSummary {
   }
 
   /// Over the readings on which it acts.
-  void find_size() {
+  void find_rms() {
     double squares = 0.0;
     std::size_t count = 0;
-    Eigen::RowVectorXd largest_row;
     for (const SetupView& view : state_.model().views()) {
       const Eigen::MatrixXd rows = surface_.effect->drivers(view, surface_.effect->shape_values());
       if (rows.isZero(0.0)) continue;
@@ -135,16 +136,16 @@ class SurfaceSummary {
         squares += value * value;
         ++count;
         keep_dot(drivers, row);
-        if (std::abs(value) <= std::abs(out_.largest)) continue;
-        out_.largest = value;
-        largest_row = rows.row(row);
-        out_.at.clear();
-        for (const Eigen::VectorXd& driver : drivers) out_.at.push_back(driver[row]);
       }
     }
-    if (count == 0) return;
-    out_.rms = std::sqrt(squares / static_cast<double>(count));
-    if (largest_row.size() > 0) out_.largest_u = uncertainty(largest_row)[0];
+    if (count > 0) out_.rms = std::sqrt(squares / static_cast<double>(count));
+  }
+
+  void find_largest() {
+    LargestValue largest = largest_value(basis_, coefficients_, out_.figure.covariance);
+    out_.largest = largest.value;
+    out_.largest_u = largest.u;
+    out_.at = std::move(largest.at);
   }
 
   void keep_dot(const std::vector<Eigen::VectorXd>& drivers, Eigen::Index row) {

@@ -50,6 +50,13 @@ Finding unnamed(FindingCode code, const UnknownFinding& unknown) {
   return finding;
 }
 
+/// The leading one; the size of a surface that was drawn for it is stated with the surface.
+Finding leading_unnamed(FindingCode code, const Diagnosis& diagnosis) {
+  Finding finding = unnamed(code, diagnosis.unknown.front());
+  if (!diagnosis.surfaces.empty()) finding.data["drawn"] = true;
+  return finding;
+}
+
 Finding alternatives(FindingCode code, const std::vector<EffectFinding>& set) {
   return {code, {{"effects", labels(set)}}};
 }
@@ -87,7 +94,7 @@ void add_laws(const std::vector<FormulaFinding>& formulas, Finding& finding) {
   finding.data["law_U"] = expanded;
 }
 
-Finding drawn(const SurfaceFinding& surface) {
+Finding drawn(const Diagnosis& diagnosis, const SurfaceFinding& surface) {
   const auto value = [&surface](double si) { return FindingNumber{si, surface.unit, surface.si_per_unit}; };
   Finding finding{FindingCode::DiagnosisDrawn,
                   {{"effect", surface.label},
@@ -97,6 +104,8 @@ Finding drawn(const SurfaceFinding& surface) {
                    {"at", std::vector<FindingNumber>(surface.at.size())}}};
   auto& at = std::get<std::vector<FindingNumber>>(finding.data["at"]);
   for (std::size_t i = 0; i < at.size(); ++i) at[i].si = surface.at[i];
+  if (const std::optional<double> removed = removed_rms(diagnosis, surface))
+    finding.data["removes"] = FindingNumber{*removed, "um", kMicro};
   if (!surface.free.empty()) finding.data["left_open"] = surface.free;
   if (!surface.formulas.empty()) add_laws(surface.formulas, finding);
   return finding;
@@ -112,13 +121,13 @@ void conclude_named(const Remarks& remarks, Diagnosis& diagnosis) {
   for (const EffectFinding& effect : diagnosis.effects) findings.push_back(named(effect));
   for (const auto* set : sets) findings.push_back(alternatives(FindingCode::DiagnosisMoreOneOf, *set));
   if (remarks.more_is_known) findings.push_back({FindingCode::DiagnosisMoreInCatalogue});
-  if (more) findings.push_back(unnamed(FindingCode::DiagnosisMoreUnknown, diagnosis.unknown.front()));
+  if (more) findings.push_back(leading_unnamed(FindingCode::DiagnosisMoreUnknown, diagnosis));
   if (not_reduced) findings.push_back({FindingCode::DiagnosisHeldoutNotReduced});
 }
 
 void conclude_unknown(Diagnosis& diagnosis) {
   diagnosis.verdict = Verdict::Unknown;
-  diagnosis.findings.push_back(unnamed(diagnosis.unknown.front()));
+  diagnosis.findings.push_back(leading_unnamed(FindingCode::DiagnosisUnknown, diagnosis));
   for (const auto* set : sets_of_alternatives(diagnosis))
     diagnosis.findings.push_back(alternatives(FindingCode::DiagnosisNearest, *set));
 }
@@ -148,7 +157,7 @@ void add_remarks(const Remarks& remarks, Diagnosis& diagnosis) {
   auto& findings = diagnosis.findings;
   findings.insert(findings.end(), remarks.rejected.begin(), remarks.rejected.end());
   add_choices(diagnosis);
-  for (const SurfaceFinding& surface : diagnosis.surfaces) findings.push_back(drawn(surface));
+  for (const SurfaceFinding& surface : diagnosis.surfaces) findings.push_back(drawn(diagnosis, surface));
   if (const std::size_t back = remarks.removed_by_fit - diagnosis.removed_readings.size(); back > 0) {
     findings.push_back({FindingCode::DiagnosisReadingsReinstated,
                         {{"readings", count(back)}, {"of", count(remarks.removed_by_fit)}}});

@@ -22,6 +22,7 @@ Json axes_json(const DrawnSurface& surface) {
     axes.push_back(
         {{"title", axis_title(driver)},
          {"name", driver.written()},
+         {"unit", shown_unit_of(driver)},
          {"places", rounded_array(figure.places[i], 1.0)},
          {"dots", i < figure.dots.size() ? rounded_array(figure.dots[i], 1.0, 4) : Json::array()}});
   }
@@ -44,6 +45,7 @@ Json surface_json(const DrawnSurface& surface, double coverage_factor) {
           {"largest_U95", rounded(coverage_factor * values.largest_u * factor, 2)},
           {"at", rounded_array(values.at, 1.0, 4)},
           {"third", values.drivers.size() > 2 ? Json(values.drivers[2].written()) : Json()},
+          {"third_unit", values.drivers.size() > 2 ? Json(shown_unit_of(values.drivers[2])) : Json()},
           {"third_at", rounded(surface.figure.third, 4)},
           {"rms", rounded(values.rms * factor, 3)}};
 }

@@ -1,33 +1,14 @@
 #include "volcal/identify/result/surface_values.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <utility>
 
+#include "volcal/identify/result/largest_value.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/tensor_basis.h"
 
 namespace volcal {
 namespace {
-
-constexpr int kPlaces = 17;  // per driver
-
-/// Equally spaced, the last driver first.
-std::vector<std::vector<double>> places(const TensorBasis& basis) {
-  std::vector<std::vector<double>> all = {{}};
-  for (const TensorBasis::Side& side : basis.sides()) {
-    std::vector<std::vector<double>> longer;
-    for (const auto& place : all) {
-      for (int i = 0; i < kPlaces; ++i) {
-        longer.push_back(place);
-        longer.back().push_back(side.from + (side.to - side.from) * i / (kPlaces - 1.0));
-      }
-    }
-    all = std::move(longer);
-  }
-  return all;
-}
 
 SurfaceValues values_of(std::shared_ptr<const Effect> effect, const EffectSpec& spec,
                         const ParameterBlock& block, const FitResult& result) {
@@ -41,32 +22,23 @@ SurfaceValues values_of(std::shared_ptr<const Effect> effect, const EffectSpec& 
   values.si_per_unit = block.si_per_unit.front();
   values.offset = block.offset;
   const Eigen::VectorXd coefficients = result.parameters.segment(block.offset, block.size());
-  double squares = 0.0;
-  const auto all = places(basis);
-  for (const auto& place : all) {
-    const Eigen::VectorXd row = basis.row(place);
-    const double value = row.dot(coefficients);
-    squares += value * value;
-    if (values.at.empty() || std::abs(value) > std::abs(values.largest)) {
-      values.largest = value;
-      values.at = place;
-      values.largest_row = row;
-    }
-  }
-  values.rms = std::sqrt(squares / static_cast<double>(all.size()));
+  const Eigen::MatrixXd covariance =
+      result.covariance.size() == 0
+          ? Eigen::MatrixXd()
+          : result.covariance.block(block.offset, block.offset, block.size(), block.size());
+  LargestValue largest = largest_value(basis, coefficients, covariance);
+  values.rms = basis.root_mean_square(coefficients);
+  values.largest = largest.value;
+  values.largest_u = largest.u;
+  values.largest_row = std::move(largest.row);
+  values.at = std::move(largest.at);
   values.effect = std::move(effect);
-  values.largest_u = uncertainty_of_values(result, values, values.largest_row.transpose())[0];
   return values;
 }
 
 }  // namespace
 
-std::string SurfaceValues::place_words() const {
-  std::string words;
-  for (std::size_t i = 0; i < at.size(); ++i)
-    words += fmt::format("{}{} = {:.4g}", i > 0 ? ", " : "", drivers[i].written(), at[i]);
-  return words;
-}
+std::string SurfaceValues::place_words() const { return place_in_words(drivers, at); }
 
 std::vector<SurfaceValues> surface_values(const FitResult& result) {
   std::vector<SurfaceValues> surfaces;

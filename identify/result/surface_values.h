@@ -24,12 +24,12 @@ struct SurfaceValues {
   double si_per_unit = 1.0;
   int offset = 0;               ///< of its coefficients in FitResult::parameters
   double rms = 0.0;             ///< over the range of the drivers
-  double largest = 0.0;         ///< of the largest magnitude
+  double largest = 0.0;         ///< of the largest magnitude (largest_value.h)
   double largest_u = 0.0;       ///< standard uncertainty
   Eigen::VectorXd largest_row;  ///< its derivatives to the coefficients
   std::vector<double> at;       ///< its place, one value per driver
 
-  /// "y = 310, z = -120", where it is largest.
+  /// "y = 310 mm, z = -120 mm", where it is largest.
   std::string place_words() const;
 };
 

@@ -5,8 +5,10 @@
 #include <array>
 #include <stdexcept>
 
+#include "volcal/identify/text/uncertain_number.h"
 #include "volcal/identify/words/sentence_lists.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/description/variable.h"
 
 namespace volcal {
@@ -27,8 +29,8 @@ std::string named(const Finding& finding) {
     throw std::invalid_argument("there is not one value and one U for each amplitude");
   if (amplitudes.size() > kMostAmplitudesInWords) return text;
   for (std::size_t i = 0; i < amplitudes.size(); ++i) {
-    text += fmt::format(", {} = {:.3g} +- {:.2g} {}", amplitudes[i], values[i].in_unit(),
-                        expanded[i].in_unit(), values[i].unit);
+    text += fmt::format(", {} = {} {}", amplitudes[i],
+                        value_with_u(values[i].in_unit(), expanded[i].in_unit()), values[i].unit);
   }
   return text + (finding.text("shape").empty() ? "" : ", " + finding.text("shape"));
 }
@@ -49,9 +51,11 @@ std::string unnamed(const Finding& finding) {
   } else if (finding.has("period")) {
     action += fmt::format(", every {:.4g} mm", finding.number("period").si * 1e3);
   }
-  return fmt::format(
-      "it depends on {}, and acts along {}; its strongest test alone explains {:.2g} um RMS of the readings",
-      dependence(finding), action, finding.number("rms").si * 1e6);
+  std::string text = fmt::format("it depends on {}, and acts along {}", dependence(finding), action);
+  if (!finding.flag("drawn"))
+    text += fmt::format("; its strongest test explains {:.2g} um RMS of the readings",
+                        finding.number("rms").si * kPerMicro);
+  return text;
 }
 
 std::string unknown(const Finding& finding) {
@@ -94,34 +98,29 @@ std::string laws(const Finding& finding) {
     throw std::invalid_argument("there is not one shape, amplitude and U for each law");
   std::string text;
   for (std::size_t i = 0; i < count; ++i) {
-    text += fmt::format(" {} {}{}, {:.3g} +- {:.2g} {}.",
-                        i == 0 ? "A law that explains as much:" : "Or:", labels[i],
-                        shapes[i].empty() ? "" : " with " + shapes[i], amplitudes[i].in_unit(),
-                        expanded[i].in_unit(), amplitudes[i].unit);
+    text += fmt::format(" {} {}{}, {} {}.", i == 0 ? "A law that explains as much:" : "Or:", labels[i],
+                        shapes[i].empty() ? "" : " with " + shapes[i],
+                        value_with_u(amplitudes[i].in_unit(), expanded[i].in_unit()), amplitudes[i].unit);
   }
   return text;
-}
-
-/// " mm": of a driver's values.
-std::string unit_of_driver(const std::string& written) {
-  const auto variable = Variable::parse_written(written);
-  const std::string unit = variable ? unit_text(variable->unit().suffix) : "";
-  return unit.empty() ? "" : " " + unit;
 }
 
 /// "Drawn for it: surface EAY by y z, up to 12.3 +- 0.8 urad at y = 310 mm, z = -120 mm; ..."
 std::string drawn(const Finding& finding) {
   const std::vector<std::string> drivers = finding.texts("drivers");
-  const std::vector<FindingNumber> at = finding.numbers("at");
-  if (drivers.size() != at.size()) throw std::invalid_argument("there is not one value for each driver");
-  std::string place;
-  for (std::size_t i = 0; i < at.size(); ++i)
-    place +=
-        fmt::format("{}{} = {:.3g}{}", i > 0 ? ", " : "", drivers[i], at[i].si, unit_of_driver(drivers[i]));
+  const std::vector<FindingNumber> numbers = finding.numbers("at");
+  if (drivers.size() != numbers.size()) throw std::invalid_argument("there is not one value for each driver");
+  std::vector<double> at;
+  for (const FindingNumber& number : numbers) at.push_back(number.si);
   const FindingNumber& largest = finding.number("largest");
-  std::string text = fmt::format(
-      "Drawn for it: {}, up to {:.3g} +- {:.2g} {} at {}; extend the model with it and the error falls.",
-      finding.text("effect"), largest.in_unit(), finding.number("U").in_unit(), largest.unit, place);
+  std::string text =
+      fmt::format("Drawn for it: {}, up to {} {} at {}", finding.text("effect"),
+                  value_with_u(largest.in_unit(), finding.number("U").in_unit()), largest.unit,
+                  place_in_words(variables_in(fmt::format("{}", fmt::join(drivers, " "))), at));
+  if (finding.has("removes"))
+    text +=
+        fmt::format("; it removes {:.2g} um RMS from the readings", finding.number("removes").si * kPerMicro);
+  text += "; extend the model with it and the error falls.";
   text += laws(finding);
   for (const std::string& part : finding.texts("left_open"))
     text += " These readings leave open " + part + ".";

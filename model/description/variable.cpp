@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
@@ -207,6 +208,17 @@ std::vector<Variable> variables_in(const std::string& list) {
     variables.push_back(*variable);
   }
   return variables;
+}
+
+std::string place_in_words(const std::vector<Variable>& variables, const std::vector<double>& at) {
+  std::ostringstream words;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const std::string unit = unit_text(variables[i].unit().suffix);
+    words.precision(std::abs(at[i]) < 1000.0 ? 3 : 5);
+    words << (i > 0 ? ", " : "") << variables[i].written() << " = " << at[i] << (unit.empty() ? "" : " ")
+          << unit;
+  }
+  return words.str();
 }
 
 std::string channel_variable(const std::string& channel) {

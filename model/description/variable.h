@@ -89,6 +89,10 @@ std::string written_list(const std::vector<Variable>& variables);
 /// What is in such a list. Throws std::invalid_argument for a word that is no variable.
 std::vector<Variable> variables_in(const std::string& list);
 
+/// A place, a value for each variable in its unit: "y = 310 mm, z = -120 mm". Three digits, no fewer than to
+/// the unit.
+std::string place_in_words(const std::vector<Variable>& variables, const std::vector<double>& at);
+
 /// Name of a channel in expressions: T_ and the channel, what is no letter or digit replaced by _.
 std::string channel_variable(const std::string& channel);
 

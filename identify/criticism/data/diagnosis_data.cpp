@@ -67,6 +67,14 @@ std::vector<EffectFinding> drawn_effects(const Diagnosis& diagnosis) {
   return drawn;
 }
 
+std::optional<double> removed_rms(const Diagnosis& diagnosis, const SurfaceFinding& surface) {
+  const auto step = std::ranges::find(diagnosis.ladder, surface.label, &LadderStep::added);
+  if (step == diagnosis.ladder.end() || step == diagnosis.ladder.begin()) return {};
+  const double before = std::prev(step)->rms_fit, after = step->rms_fit;
+  if (!(before > after)) return {};
+  return std::sqrt(before * before - after * after);
+}
+
 std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis) {
   const std::size_t drawn = std::min(diagnosis.surfaces.size(), diagnosis.unknown.size());
   return std::span(diagnosis.unknown).subspan(drawn);

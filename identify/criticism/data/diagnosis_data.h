@@ -119,7 +119,7 @@ struct SurfaceFinding {
   double log_evidence = 0.0;          ///< natural, over the model without it
   double effective_parameters = 0.0;  ///< that the readings determine
   double rms = 0.0;                   ///< SI, over the readings
-  double largest = 0.0;               ///< SI, of the largest magnitude at a reading
+  double largest = 0.0;               ///< SI, of the largest magnitude (result/largest_value.h)
   double largest_u = 0.0;
   std::vector<double> at;         ///< there, one value per driver, in its unit
   std::vector<std::string> free;  ///< what the readings do not tell from the rest of the model, in words
@@ -248,6 +248,10 @@ struct Diagnosis {
 
 /// Of `unknown`, what no surface was drawn for.
 std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis);
+
+/// What a surface removes from the readings, m RMS: of the squares of the fitted residuals before and after
+/// its step of the ladder. Absent where the ladder has no such step or they did not fall.
+std::optional<double> removed_rms(const Diagnosis& diagnosis, const SurfaceFinding& surface);
 
 /// For every surface what enters a model: the leading law, or the surface itself.
 std::vector<EffectFinding> drawn_effects(const Diagnosis& diagnosis);

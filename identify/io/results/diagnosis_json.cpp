@@ -1,6 +1,7 @@
 #include "volcal/identify/io/results/diagnosis_json.h"
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "volcal/identify/criticism/data/effect_words.h"
@@ -139,7 +140,7 @@ Json heldout_json(const MemberFinding& member) {
           {"systematic_high_um", micro(member.systematic_high)}};
 }
 
-Json surface_json(const SurfaceFinding& surface) {
+Json surface_json(const Diagnosis& diagnosis, const SurfaceFinding& surface) {
   Json formulas = Json::array();
   for (const FormulaFinding& formula : surface.formulas) formulas.push_back(formula_json(formula));
   return {{"kind", surface.name.kind},
@@ -153,6 +154,8 @@ Json surface_json(const SurfaceFinding& surface) {
           {"u", finite_or_null(surface.largest_u / surface.si_per_unit)},
           {"at", surface.at},
           {"rms", finite_or_null(surface.rms / surface.si_per_unit)},
+          {"removed_um",
+           micro(removed_rms(diagnosis, surface).value_or(std::numeric_limits<double>::quiet_NaN()))},
           {"log_evidence", finite_or_null(surface.log_evidence)},
           {"effective_parameters", finite_or_null(surface.effective_parameters)},
           {"free", surface.free},
@@ -257,7 +260,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   json["unknown"] = Json::array();
   for (const UnknownFinding& unknown : diagnosis.unknown) json["unknown"].push_back(unknown_json(unknown));
   json["surfaces"] = Json::array();
-  for (const SurfaceFinding& surface : diagnosis.surfaces) json["surfaces"].push_back(surface_json(surface));
+  for (const SurfaceFinding& surface : diagnosis.surfaces)
+    json["surfaces"].push_back(surface_json(diagnosis, surface));
   if (!diagnosis.tried.empty()) {
     json["tried"] = list_json(diagnosis.tried);
     json["tried_errors"] = Json::array();

@@ -320,7 +320,7 @@ std::string failure_sentence(const ComparedModel& model) {
   std::string text = where_it_fails(model);
   if (!model.screening) return text;
   if (const std::optional<Finding> scanned = finding_of(*model.screening))
-    text += " But " + contradiction(*scanned) + ".";
+    text += (model.comparison.total.significant ? " Besides, " : " But ") + contradiction(*scanned) + ".";
   if (model.screening->misread) text += " Note: " + sentence(*model.screening->misread) + ".";
   return text;
 }

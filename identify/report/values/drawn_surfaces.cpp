@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "volcal/identify/statistics/even_sample.h"
+#include "volcal/identify/text/uncertain_number.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/functions/drawn_places.h"
@@ -99,9 +100,10 @@ std::vector<DrawnSurface> drawn_surfaces(const FitResult& result, const Campaign
 }
 
 std::string surface_line(const SurfaceValues& surface, double coverage_factor) {
-  return fmt::format(
-      "{}: up to {:.3g} +- {:.2g} {} at {}", surface.label, surface.largest / surface.si_per_unit,
-      coverage_factor * surface.largest_u / surface.si_per_unit, surface.unit, surface.place_words());
+  return fmt::format("{}: up to {} {} at {}", surface.label,
+                     value_with_u(surface.largest / surface.si_per_unit,
+                                  coverage_factor * surface.largest_u / surface.si_per_unit),
+                     surface.unit, surface.place_words());
 }
 
 }  // namespace volcal::report

@@ -18,7 +18,7 @@ struct DrawnSurface {
 /// With the places of the readings, but for an aligned result, whose frame is another than theirs.
 std::vector<DrawnSurface> drawn_surfaces(const FitResult& result, const Campaign& campaign);
 
-/// "surface EAY by y z: up to 12.3 +- 0.8 urad at y = 310, z = -120"
+/// "surface EAY by y z: up to 12.3 +- 0.8 urad at y = 310 mm, z = -120 mm"
 std::string surface_line(const SurfaceValues& surface, double coverage_factor);
 
 }  // namespace volcal::report

@@ -54,7 +54,7 @@ TEST(Verdict, NamedWithAmplitudeAndU) {
   conclude({}, diagnosis);
   EXPECT_EQ(to_string(diagnosis.verdict), "NAMED");
   EXPECT_THAT(sentences(diagnosis.findings),
-              ElementsAre("The missing effect is: EYY reversal (reversal), EYY reversal = 1.5 +- 0.2 um"));
+              ElementsAre("The missing effect is: EYY reversal (reversal), EYY reversal = 1.50 +- 0.20 um"));
 }
 
 /// 0.8 of the systematic error must be gone where what is left is more than noise.
@@ -75,10 +75,9 @@ TEST(Verdict, NamesKeepAReserveWhileSomethingIsOpen) {
   beside.unknown = {unknown({"z"}, -5.0)};
   conclude({}, beside);
   EXPECT_EQ(to_string(beside.verdict), "NAMED_MORE_REMAINS");
-  EXPECT_EQ(
-      sentence(beside.findings.back()),
-      "More remains: it depends on z, and acts along X; its strongest test alone explains 0.5 um RMS of "
-      "the readings");
+  EXPECT_EQ(sentence(beside.findings.back()),
+            "More remains: it depends on z, and acts along X; its strongest test explains 0.5 um RMS of "
+            "the readings");
 }
 
 TEST(Verdict, WhatHasNoNameGoesBeforeSetsAndSetsBeforeNothing) {

@@ -17,12 +17,12 @@ std::vector<WordedFinding> examples_of_criticism() {
          {"amplitudes", Texts{"EYY reversal"}},
          {"values", std::vector<FindingNumber>{{1.5e-6, "um", 1e-6}}},
          {"U", std::vector<FindingNumber>{{0.196e-6, "um", 1e-6}}}}},
-       "The missing effect is: EYY reversal (reversal), EYY reversal = 1.5 +- 0.2 um, period 10 mm"},
+       "The missing effect is: EYY reversal (reversal), EYY reversal = 1.50 +- 0.20 um, period 10 mm"},
       {{FindingCode::DiagnosisNamed, {{"effect", "many"}, {"kind", "custom"}, {"shape", ""}}},
        "The missing effect is: many (custom)"},
       {{FindingCode::DiagnosisUnknown, {{"direction", "X"}, {"rms", FindingNumber{0.5e-6, "um", 1e-6}}}},
        "An effect that is not in the catalogue: it depends on nothing recorded that was tried, and acts "
-       "along X; its strongest test alone explains 0.5 um RMS of the readings"},
+       "along X; its strongest test explains 0.5 um RMS of the readings"},
       {{FindingCode::DiagnosisMoreUnknown,
         {{"direction", "X"},
          {"rms", FindingNumber{0.5e-6, "um", 1e-6}},
@@ -30,14 +30,20 @@ std::vector<WordedFinding> examples_of_criticism() {
          {"and_one_of", Texts{"T_air", "time"}},
          {"period", FindingNumber{10.02e-3, "mm", 1e-3}}}},
        "More remains: it depends on dir_x and z and one of T_air, time, and acts along X, every 10.02 mm; "
-       "its strongest test alone explains 0.5 um RMS of the readings"},
+       "its strongest test explains 0.5 um RMS of the readings"},
       {{FindingCode::DiagnosisMoreUnknown,
         {{"direction", "Z"},
          {"rms", FindingNumber{0.5e-6, "um", 1e-6}},
          {"depends_on", Texts{"x"}},
          {"rotation", "EBX"}}},
-       "More remains: it depends on x, and acts along Z, as EBX; its strongest test alone explains 0.5 um "
+       "More remains: it depends on x, and acts along Z, as EBX; its strongest test explains 0.5 um "
        "RMS of the readings"},
+      {{FindingCode::DiagnosisMoreUnknown,
+        {{"direction", "Z"},
+         {"rms", FindingNumber{0.5e-6, "um", 1e-6}},
+         {"depends_on", Texts{"x"}},
+         {"drawn", true}}},
+       "More remains: it depends on x, and acts along Z"},
       {{FindingCode::DiagnosisOneOf, {{"effects", Texts{"a", "b"}}}},
        "One of these is missing, and these readings do not tell them apart: a; b"},
       {{FindingCode::DiagnosisNearest, {{"effects", Texts{"a", "b"}}}},
@@ -71,18 +77,21 @@ std::vector<WordedFinding> examples_of_criticism() {
           std::vector<FindingNumber>{{1.234e-6, "urad/mm3", 1e-6}, {2e-6, "urad/mm2", 1e-6}}},
          {"law_U", std::vector<FindingNumber>{{0.12e-6, "urad/mm3", 1e-6}, {0.3e-6, "urad/mm2", 1e-6}}},
          {"left_open", Texts{"what is straight in y: the rest of the model holds it"}}}},
-       "Drawn for it: EAY by y z, up to 12.3 +- 0.82 urad at y = 310 mm, z = -120 mm; extend the model with "
+       "Drawn for it: EAY by y z, up to 12.34 +- 0.82 urad at y = 310 mm, z = -120 mm; extend the model with "
        "it and the error falls. A law that explains as much: EAY by y * (z - p)^2 with p = 120 mm, 1.23 +- "
-       "0.12 urad/mm3. Or: EAY by y * z, 2 +- 0.3 urad/mm2. These readings leave open what is straight in y: "
+       "0.12 urad/mm3. Or: EAY by y * z, 2.00 +- 0.30 urad/mm2. These readings leave open what is straight "
+       "in y: "
        "the rest of the model holds it."},
       {{FindingCode::DiagnosisDrawn,
         {{"effect", "EXX by t since_c"},
          {"largest", FindingNumber{1e-6, "um", 1e-6}},
          {"U", FindingNumber{0.2e-6, "um", 1e-6}},
+         {"removes", FindingNumber{0.304e-6, "um", 1e-6}},
          {"drivers", Texts{"t", "since_c"}},
          {"at", std::vector<FindingNumber>{{60.0}, {15.0}}}}},
-       "Drawn for it: EXX by t since_c, up to 1 +- 0.2 um at t = 60 s, since_c = 15 deg; extend the model "
-       "with it and the error falls."},
+       "Drawn for it: EXX by t since_c, up to 1.00 +- 0.20 um at t = 60 s, since_c = 15 deg; it removes 0.3 "
+       "um "
+       "RMS from the readings; extend the model with it and the error falls."},
       {{FindingCode::DiagnosisTried,
         {{"effect", "a"},
          {"added", true},

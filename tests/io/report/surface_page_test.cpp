@@ -70,7 +70,7 @@ TEST_F(SurfacePage, ACurveHasItsValuesAndBand) {
   // At the middle knot of four pieces cubic splines are 1/6, 2/3, 1/6.
   const double middle = 1.96 * std::sqrt(2.0 / 36.0 + 4.0 / 9.0);
   EXPECT_NEAR(curve.at("U95").at(places.size() / 2).get<double>(), middle, 1e-2);
-  // The root mean square of u over 0..1 is 1/sqrt(3); here over 17 places of it.
+  // The root mean square of u over 0..1 is 1/sqrt(3).
   EXPECT_NEAR(curve.at("rms").get<double>(), 10.0 / std::sqrt(3.0), 0.2);
 }
 
@@ -119,7 +119,7 @@ TEST_F(SurfacePage, IsDrawn) {
 TEST_F(SurfacePage, ALineOfTextStatesTheLargestValue) {
   const auto surfaces = surface_values(fit_.result);
   ASSERT_EQ(surfaces.size(), 3u);
-  EXPECT_EQ(report::surface_line(surfaces[0], 1.96), "curve EYX by x: up to 10 +- 2 um at x = 400");
+  EXPECT_EQ(report::surface_line(surfaces[0], 1.96), "curve EYX by x: up to 10.0 +- 2.0 um at x = 400 mm");
   ASSERT_EQ(surfaces[1].at.size(), 2u);  // any y: the values are those of z alone
   EXPECT_EQ(surfaces[1].at[1], 0.0);
 }

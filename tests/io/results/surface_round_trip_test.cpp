@@ -122,6 +122,30 @@ TEST(SurfaceJson, TheRestAloneIsStillSeen) {
             (std::vector<std::string>{"x", "time"}));
 }
 
+/// Without any effect of a name, too.
+TEST(SurfaceJson, WhatWasDrawnIsListedWithItsRankAndSize) {
+  Diagnosis diagnosis = with_a_drawn_surface();
+  diagnosis.effects.clear();
+  diagnosis.one_of.clear();
+  diagnosis.further_one_of.clear();
+  EXPECT_THAT(diagnosis_text(diagnosis),
+              ::testing::ContainsRegex(
+                  "1 +EAY by y \\* z\\^2 +custom +-4.50 \\+- 0.98 +urad +y = 310 mm, z = -120 mm"));
+}
+
+/// Residuals of 5 um before and 4 um after: what is removed is 3 um.
+TEST(SurfaceJson, WhatASurfaceRemovesIsTheFallOfTheSquares) {
+  Diagnosis diagnosis = with_a_drawn_surface();
+  diagnosis.ladder.assign(2, {});
+  diagnosis.ladder[0].rms_fit = 5e-6;
+  diagnosis.ladder[1].rms_fit = 4e-6;
+  EXPECT_EQ(removed_rms(diagnosis, diagnosis.surfaces.front()), std::nullopt);
+  diagnosis.ladder[1].added = diagnosis.surfaces.front().label;
+  EXPECT_NEAR(removed_rms(diagnosis, diagnosis.surfaces.front()).value(), 3e-6, 1e-15);
+  const auto json = nlohmann::json::parse(diagnosis_json(diagnosis));
+  EXPECT_NEAR(json.at("surfaces").at(0).at("removed_um").get<double>(), 3.0, 1e-9);
+}
+
 /// After what was named or could not be separated, before what was not added.
 TEST(SurfaceJson, WhatWasDrawnHasARank) {
   Diagnosis diagnosis = with_a_drawn_surface();

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -120,6 +121,21 @@ void add_asked_laws(const std::string& text, ModelSpec& model, DiagnoseOptions& 
   options.asked_laws.insert(options.asked_laws.end(), surfaces.begin(), surfaces.end());
 }
 
+/// Where an effect was found, how it enters the model, and how that is fitted.
+std::string what_next(const DiagnoseArguments& arguments, const Diagnosis& diagnosis) {
+  if (accepted_effects(diagnosis).empty()) return "";
+  const std::string extended = (std::filesystem::path(arguments.output) / "extended.toml").string();
+  if (arguments.model.empty()) {
+    const std::string removed = removed_in_fit_text(diagnosis, arguments.campaign, extended);
+    return removed.empty()
+               ? fmt::format("next: volcal fit {} --model {} -o RESULT\n", arguments.campaign, extended)
+               : removed;
+  }
+  return fmt::format("next: volcal extend {} --diagnosis {} --accepted -o NEW.toml\n", arguments.model,
+                     arguments.output) +
+         removed_in_fit_text(diagnosis, arguments.campaign, "NEW.toml");
+}
+
 int run_diagnose(const DiagnoseArguments& arguments) {
   if (arguments.list) return print_list(arguments);
   if (!arguments.shown.empty()) return show(arguments);
@@ -159,6 +175,7 @@ int run_diagnose(const DiagnoseArguments& arguments) {
     fmt::print("{}",
                kept && !arguments.verbose ? diagnosis_summary_text(diagnosis) : diagnosis_text(diagnosis));
     if (kept) fmt::print("written: {} (all of it: diagnosis.txt)\n", arguments.output);
+    if (kept) fmt::print("{}", what_next(arguments, diagnosis));
     if (!arguments.picture.empty()) fmt::print("drawn: {}\n", arguments.picture);
     if (kept && !report_available()) fmt::print("no report.html: {}\n", how_to_get_report());
   }

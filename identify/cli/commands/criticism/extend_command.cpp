@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,8 +50,7 @@ struct Changes {
   std::vector<std::string> given_back, added;
 };
 
-std::vector<EffectFinding> chosen(const ExtendArguments& arguments) {
-  const Diagnosis diagnosis = read_diagnosis(arguments.diagnosis);
+std::vector<EffectFinding> chosen(const ExtendArguments& arguments, const Diagnosis& diagnosis) {
   const std::string again = "volcal diagnose --show " + arguments.diagnosis + " prints the ranking";
   if (arguments.accepted) {
     std::vector<EffectFinding> accepted = accepted_effects(diagnosis);
@@ -174,8 +174,11 @@ int run_extend(const ExtendArguments& arguments) {
   Changes changes;
   for (const std::string& effect : arguments.effects) add_named(effect, extended, campaign, changes);
   if (!arguments.custom.empty()) add_custom(arguments, extended, changes);
+  std::optional<Diagnosis> diagnosis;
   if (!arguments.diagnosis.empty()) {
-    for (const EffectFinding& effect : chosen(arguments)) add_found(effect, arguments, extended, changes);
+    diagnosis = read_diagnosis(arguments.diagnosis);
+    for (const EffectFinding& effect : chosen(arguments, *diagnosis))
+      add_found(effect, arguments, extended, changes);
   }
   const std::string output = arguments.output.empty() ? next_name(arguments.model) : arguments.output;
   if (!arguments.force)
@@ -183,6 +186,10 @@ int run_extend(const ExtendArguments& arguments) {
                      "name another file with -o, or overwrite it with --force");
   write_text_file(output, model_toml(model, path_from(output, machine.file)));
   report(changes, output, model.effects.size(), campaign.notes, arguments.json);
+  if (diagnosis && !arguments.json) {
+    fmt::print("{}", removed_in_fit_text(
+                         *diagnosis, arguments.campaign.empty() ? "CAMPAIGN" : arguments.campaign, output));
+  }
   return kDone;
 }
 

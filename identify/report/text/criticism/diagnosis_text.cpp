@@ -11,6 +11,7 @@
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/detectable_groups.h"
 #include "volcal/identify/result/result.h"
+#include "volcal/identify/text/uncertain_number.h"
 #include "volcal/identify/words/noise_words.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
@@ -117,6 +118,28 @@ std::string evidence_table(const std::vector<EffectFinding>& findings,
     }
   }
   return table.text();
+}
+
+/// Surfaces and curves with what they are largest by, and their leading laws in their place.
+std::string drawn_table(const Diagnosis& diagnosis, const std::vector<EffectFinding>& ranked) {
+  TextTable table({{"rank"},
+                   {"effect", Align::Left},
+                   {"kind", Align::Left},
+                   {"up to"},
+                   {"unit", Align::Left},
+                   {"at", Align::Left},
+                   {"log evidence"}},
+                  "Drawn for what has no name");
+  const std::vector<EffectFinding> drawn = drawn_effects(diagnosis);
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const SurfaceFinding& surface = diagnosis.surfaces[i];
+    table.add_row({rank_of(drawn[i], ranked), drawn[i].label, drawn[i].spec.kind,
+                   value_with_u(surface.largest / surface.si_per_unit,
+                                kCoverageFactor * surface.largest_u / surface.si_per_unit),
+                   surface.unit, place_in_words(surface.drivers, surface.at),
+                   fixed_number(surface.log_evidence, 1)});
+  }
+  return table.empty() ? "" : "\n" + table.text();
 }
 
 std::string noise_text(const Diagnosis& diagnosis) {
@@ -293,6 +316,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   if (!diagnosis.effects.empty())
     text += "\n" + evidence_table(diagnosis.effects, ranked, "Added", diagnosis.effects.size());
   text += alternatives_text(diagnosis, ranked);
+  text += drawn_table(diagnosis, ranked);
   if (!diagnosis.tried.empty())
     text += "\n" + evidence_table(diagnosis.tried, ranked, "Your own", diagnosis.tried.size());
   for (const AskedLaws& asked : diagnosis.asked_laws)
@@ -321,6 +345,17 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   text += removed_text(diagnosis);
   for (const std::string& words : sentences(diagnosis.not_looked_for)) text += words + "\n";
   return text + findings_text(diagnosis.notes);
+}
+
+std::string removed_in_fit_text(const Diagnosis& diagnosis, const std::string& campaign,
+                                const std::string& model) {
+  const std::size_t removed = diagnosis.removed_readings.size();
+  if (removed == 0) return "";
+  return fmt::format(
+      "! the diagnosis left out {} reading{} as outlier{}; `volcal fit` takes them back and finds other "
+      "values "
+      "unless it removes them, too\nnext: volcal fit {} --model {} --outliers remove -o RESULT\n",
+      removed, removed == 1 ? "" : "s", removed == 1 ? "" : "s", campaign, model);
 }
 
 }  // namespace volcal

@@ -1,5 +1,5 @@
 // A function without a formula: heat map with its readings and cuts with their bands, or a curve with its band.
-import { el, note, significant } from '../dom.js';
+import { decimalsFor, el, fixed, note, significant } from '../dom.js';
 import { addPlot, colorBar, layout2d, legendAbove, plain } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
 
@@ -7,6 +7,11 @@ const kBands = 12; // of the heat map, so that their edges are contours
 const kPixels = 12; // of the picture, between neighbouring places
 
 const kUnnamed = 'What has no name, as the readings show it';
+
+/** "11.0 ± 2.1": as many decimals as two digits of U have. */
+const withU = (value, U95) => (U95 > 0 ? `${fixed(value, decimalsFor(U95))} ± ${fixed(U95, decimalsFor(U95))}` : significant(value, 3));
+
+const unitBehind = (unit) => (unit ? ` ${unit}` : '');
 
 const largest = (values) => Math.max(...values.map(Math.abs), 1e-12);
 
@@ -62,7 +67,7 @@ function labelAt(axes, at) {
 export function heatMap(data, height = 560) {
   const [x, y] = data.axes;
   const limit = data.scale ?? largest(data.value);
-  const worded = (value, U95) => `${significant(value, 3)}${U95 === undefined ? '' : ` ± ${significant(U95, 2)}`} ${plain(data.unit)}`;
+  const worded = (value, U95) => `${withU(value, U95)} ${plain(data.unit)}`;
   const hover = x.places.flatMap((u) => y.places.map((v) => [u, v]));
   const ends = (axis) => [axis.places[0], axis.places.at(-1)];
   return {
@@ -134,7 +139,7 @@ export function curve(data) {
 
 /** The pictures of a surface or curve, largest first: [{ caption, make }]. */
 export function surfaceFigures(data, title = kUnnamed) {
-  const where = data.third ? `, at ${data.third} = ${significant(data.third_at, 3)}` : '';
+  const where = data.third ? `, at ${data.third} = ${significant(data.third_at, 3)}${unitBehind(data.third_unit)}` : '';
   const whole = { caption: `${title}${where}`, make: () => (data.axes.length === 1 ? curve(data) : heatMap(data)) };
   const others = data.axes.length === 1 ? [] : [0, 1].map((along) => ({ caption: `Cuts along ${data.axes[along].name}, 95 % bands`, make: () => cuts(data, along) }));
   return [whole, ...others];
@@ -146,14 +151,14 @@ function plotOf({ make, caption }) {
   return el('figure', {}, [el('figcaption', {}, caption), node]);
 }
 
-const place = (data) => [...data.axes.map((axis) => axis.name), ...(data.third ? [data.third] : [])]
-  .map((name, i) => `${name} = ${significant(data.at[i], 3)}`).join(', ');
+const place = (data) => [...data.axes, ...(data.third ? [{ name: data.third, unit: data.third_unit }] : [])]
+  .map(({ name, unit }, i) => `${name} = ${significant(data.at[i], 3)}${unitBehind(unit)}`).join(', ');
 
 /** Its largest value, its picture and its cuts. `over`: what its RMS is taken over; `title`: of the picture. */
 export function drawSurface(body, data, { over, title }) {
   const times = data.factor === '' ? '' : `, times ${data.factor}`;
   body.append(el('p', { class: 'surface' }, [
-    el('strong', {}, data.label), `: ${significant(data.largest, 3)} ± ${significant(data.largest_U95, 2)} ${data.unit} (95 %) at ${place(data)}${times}; RMS over ${over} ${significant(data.rms, 2)} ${data.unit}.`,
+    el('strong', {}, data.label), `: up to ${withU(data.largest, data.largest_U95)} ${data.unit} (95 %) at ${place(data)}${times}; RMS over ${over} ${significant(data.rms, 2)} ${data.unit}.`,
   ]));
   const [whole, ...cutsAlong] = surfaceFigures(data, title).map(plotOf);
   body.append(cutsAlong.length === 0 ? whole : el('div', { class: 'pair' }, [whole, el('div', { class: 'cuts' }, cutsAlong)]));
@@ -163,7 +168,7 @@ export function drawSurface(body, data, { over, title }) {
 export function renderSurface(body, data) {
   drawSurface(body, data, { over: 'the readings', title: kUnnamed });
   for (const [k, formula] of data.formulas.entries()) {
-    body.append(el('p', {}, [k === 0 ? 'A law that explains as much: ' : 'Or: ', el('strong', {}, formula.label), formula.shape === '' ? '' : `, ${formula.shape}`, `: ${significant(formula.amplitude, 4)} ± ${significant(formula.U95, 2)} ${formula.unit}.`]));
+    body.append(el('p', {}, [k === 0 ? 'A law that explains as much: ' : 'Or: ', el('strong', {}, formula.label), formula.shape === '' ? '' : `, ${formula.shape}`, `: ${withU(formula.amplitude, formula.U95)} ${formula.unit}.`]));
   }
   const open = data.free.length > 0 ? ` These readings leave open ${data.free.join('; ')}.` : '';
   body.append(note(`A smooth function found by the readings alone: they determine about ${significant(data.effective_parameters, 2)} of its parameters.${open} ${data.formulas.length > 0 ? 'extended.toml holds the law as an effect of the kind custom.' : 'extended.toml holds it as an effect of the kind empirical.'}`));

@@ -17,6 +17,9 @@ inline void add_tool_block(FitResult& result, const std::string& tool, std::mt19
   block.kind = ParameterKind::ToolOffset;
   block.name = "tool " + tool;
   block.offset = result.layout.size;
+  block.labels = {"x", "y", "z"};
+  block.units = {"mm", "mm", "mm"};
+  block.si_per_unit = {1e-3, 1e-3, 1e-3};
   block.guess = Eigen::Vector3d::Zero();
   result.layout.blocks.push_back(block);
   result.layout.size += 3;

@@ -38,21 +38,11 @@ double shortest_piece(const FitResult& result, AxisName axis) {
   return shortest;
 }
 
-/// As asked for; otherwise steps of 1, 2 or 5 x 10^n that give 21 to 51 positions, more where these are long
-/// beside the pieces of the functions; the last step may be shorter.
-std::vector<double> table_positions(const FitResult& result, const Axis& axis,
-                                    const ErrorTableOptions& options) {
+/// 1, 2 or 5 x 10^n, mm or degrees, that give 21 to 51 positions, more where these are long beside the pieces
+/// of the functions.
+double round_step(const FitResult& result, const Axis& axis) {
   constexpr double kFewest = 20.0, kMost = 200.0;  // steps
   constexpr double kOfPiece = 1.5;  // longest step; beyond two a wave of the pieces may be met at its zeros
-  if (options.step > 0.0 && !is_rotary(axis.name)) return correction_positions(axis, options.step, false);
-  const int positions = options.positions;
-  std::vector<double> table;
-  if (positions >= 2) {
-    for (int i = 0; i < positions; ++i) {
-      table.push_back(axis.travel_min + axis.travel() * static_cast<double>(i) / (positions - 1));
-    }
-    return table;
-  }
   const double edge = position_unit(axis.name).si_per_unit;
   const double coarsest = std::clamp(kOfPiece * shortest_piece(result, axis.name), axis.travel() / kMost,
                                      axis.travel() / kFewest) /
@@ -62,14 +52,34 @@ std::vector<double> table_positions(const FitResult& result, const Axis& axis,
   for (const double factor : {2.0, 5.0}) {
     if (decade * factor <= coarsest * (1.0 + 1e-9)) step = decade * factor;
   }
+  return step;
+}
+
+/// Multiples of the step (mm, degrees) within the travel, and its ends.
+std::vector<double> positions_every(double step, const Axis& axis) {
+  const double edge = position_unit(axis.name).si_per_unit;
   const double first = std::ceil(axis.travel_min / edge / step - 1e-9) * step;
-  table.push_back(axis.travel_min);
+  std::vector<double> positions = {axis.travel_min};
   for (int i = 0;; ++i) {
     const double q = (first + i * step) * edge;
     if (q >= axis.travel_max - 1e-9) break;
-    if (q > axis.travel_min + 1e-9) table.push_back(q);
+    if (q > axis.travel_min + 1e-9) positions.push_back(q);
   }
-  table.push_back(axis.travel_max);
+  positions.push_back(axis.travel_max);
+  return positions;
+}
+
+/// As asked for; otherwise round steps, of which the last may be shorter.
+std::vector<double> table_positions(const FitResult& result, const Axis& axis,
+                                    const ErrorTableOptions& options) {
+  if (options.step > 0.0 && !is_rotary(axis.name)) return correction_positions(axis, options.step, false);
+  if (options.rotary_step > 0.0 && is_rotary(axis.name))
+    return positions_every(options.rotary_step / kRadianPerDegree, axis);
+  const int positions = options.positions;
+  if (positions < 2) return positions_every(round_step(result, axis), axis);
+  std::vector<double> table;
+  for (int i = 0; i < positions; ++i)
+    table.push_back(axis.travel_min + axis.travel() * static_cast<double>(i) / (positions - 1));
   return table;
 }
 

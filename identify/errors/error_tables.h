@@ -32,7 +32,8 @@ struct ErrorTableOptions {
   /// short pieces.
   int positions = 0;
   double step = 0.0;  ///< of linear axes from home, m, with the ends of the travel; 0 = as `positions` says
-  bool zero_plus = false;  ///< shift so that the + direction is zero at home (ISO/TR 16907, Table 1)
+  double rotary_step = 0.0;  ///< of rotary axes, rad, with the ends of the travel; 0 = as `positions` says
+  bool zero_plus = false;    ///< shift so that the + direction is zero at home (ISO/TR 16907, Table 1)
   std::optional<Conditions> conditions = {};  ///< default_conditions() when absent
   std::string tool = {};  ///< for which effects that couple axes are shared out; the first when empty
 };

@@ -68,6 +68,7 @@ class FunctionTables {
 std::vector<TableFile> write_csv(const FitResult& result, const TableFormatOptions& given) {
   TableFormatOptions options = given;
   options.functions.step = given.step;
+  options.functions.rotary_step = given.rotary_step;
   const std::vector<ErrorTableRow> errors = error_table(result, function_options(result, options));
   if (errors.empty())
     throw InputError({}, "every error motion and squareness is switched off in the model: csv has no row",

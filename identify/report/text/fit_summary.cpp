@@ -13,6 +13,7 @@
 #include "volcal/identify/report/values/drawn_surfaces.h"
 #include "volcal/identify/report/values/error_range.h"
 #include "volcal/identify/report/values/residual_sample.h"
+#include "volcal/identify/text/uncertain_number.h"
 #include "volcal/identify/words/noise_words.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
@@ -239,10 +240,10 @@ std::string effects_lines(const FitResult& result) {
       continue;
     }
     const ParameterBlock& block = *result.layout.find_block(error.symbol);
-    text += fmt::format("  {}: {:.3g} +- {:.2g} {}{}\n", error.symbol.name(),
-                        result.parameters[block.offset] / block.si_per_unit[0],
-                        result.coverage_factor * error.u_rms / block.si_per_unit[0], block.units[0],
-                        error.visible ? "" : ", not visible");
+    text += fmt::format("  {}: {} {}{}\n", error.symbol.name(),
+                        value_with_u(result.parameters[block.offset] / block.si_per_unit[0],
+                                     result.coverage_factor * error.u_rms / block.si_per_unit[0]),
+                        block.units[0], error.visible ? "" : ", not visible");
   }
   if (more > 0)
     text += fmt::format("  and {} more amplitude{} of effects (--verbose)\n", more, more == 1 ? "" : "s");

@@ -313,10 +313,8 @@ TEST(TcpRewriter, SaysWhatLiesBeyondTheReadings) {
   const std::string begin = "G21 G90 G54\nG0 A0 C0\nG43.4 H1\nG0 X0 Y0 Z0\n";
   TcpRewriteOptions options;
   options.measured = MeasuredTravel(result);
-  options.measured->min[index_of(AxisName::A)] = -20.0 * kRadianPerDegree;
-  options.measured->max[index_of(AxisName::A)] = 20.0 * kRadianPerDegree;
-  options.measured->min[index_of(AxisName::C)] = -180.0 * kRadianPerDegree;
-  options.measured->max[index_of(AxisName::C)] = 180.0 * kRadianPerDegree;
+  options.measured->ends[index_of(AxisName::A)] = {-20.0 * kRadianPerDegree, 20.0 * kRadianPerDegree};
+  options.measured->ends[index_of(AxisName::C)] = {-180.0 * kRadianPerDegree, 180.0 * kRadianPerDegree};
   EXPECT_EQ(tcp_rewritten(begin + "G1 A10 C200 F100\n", result, options).summary.beyond_readings, 0);
   const TcpSummary beyond = tcp_rewritten(begin + "G1 A30 F100\n", result, options).summary;
   EXPECT_GT(beyond.beyond_readings, 0);

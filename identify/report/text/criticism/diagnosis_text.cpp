@@ -210,8 +210,9 @@ std::string removed_text(const Diagnosis& diagnosis) {
 std::string effect_line(const EffectFinding& effect) {
   std::vector<std::string> amplitudes;
   for (const AmplitudeFigure& each : effect.amplitudes) {
-    amplitudes.push_back(fmt::format("{} {} +- {} {}", each.label, edge(each.value, each.si_per_unit),
-                                     edge(kCoverageFactor * each.u, each.si_per_unit, 2), each.unit));
+    const double value = each.value / each.si_per_unit,
+                 expanded = kCoverageFactor * each.u / each.si_per_unit;
+    amplitudes.push_back(fmt::format("{} {} {}", each.label, value_with_u(value, expanded), each.unit));
   }
   if (amplitudes.empty() || amplitudes.size() > kMostAmplitudes) amplitudes = {effect.label};
   return fmt::format("  {}; log10 p {}\n", fmt::join(amplitudes, ", "), fixed_number(effect.log10_p, 1));

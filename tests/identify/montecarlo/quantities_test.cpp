@@ -27,7 +27,7 @@ TEST(Quantities, OfASurfaceTheLargestValueIsOneAndNoCoefficient) {
   }
   ASSERT_EQ(parameters.size(), 1u);
   const Quantity& largest = set.items[parameters.front()];
-  EXPECT_EQ(largest.words(), "curve EYX by x at x = 400");
+  EXPECT_EQ(largest.words(), "curve EYX by x at x = 400 mm");
   EXPECT_EQ(largest.unit, "um");
   EXPECT_NEAR(largest.estimate, testing_support::kLargestOfSurface, 1e-18);
   const Eigen::RowVectorXd row = set.rows.row(static_cast<Eigen::Index>(parameters.front()));

@@ -210,7 +210,7 @@ TEST_F(CompensatedCampaign, TablesBesideACompensationAreNotDoubtful) {
   measure_with_tables("control", "second");
   run("fit " + path("second/campaign.toml") + " --model " + path("model.toml") + " --noise white -o " +
       path("result-2"));
-  run("tables " + path("result-2") + " --format neutral-csv -o " + path("beside"));
+  run("tables " + path("result-2") + " --format csv -o " + path("beside"));
   EXPECT_THAT(content(path("beside/metadata.csv")), HasSubstr("superimposed_on,none\n"));
   const auto judged = validated("result-2", "second/campaign.toml", "--tables " + path("beside"));
   EXPECT_EQ(codes_of(judged).count("compensation.active-in-tables"), 0U);

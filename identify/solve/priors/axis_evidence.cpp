@@ -41,7 +41,6 @@ AxisEvidence::AxisEvidence(const Quadratic& all, const Eigen::VectorXd& z0,
   z0_ = z0(mine);
   cost_.precision = all.precision(mine, mine);
   cost_.gradient = all.gradient(mine);
-  cost_.constant = all.constant;
   if (others.empty()) return;
   const Eigen::MatrixXd across = all.precision(others, mine);
   Eigen::MatrixXd precision = all.precision(others, others);
@@ -59,7 +58,6 @@ AxisEvidence::AxisEvidence(const Quadratic& all, const Eigen::VectorXd& z0,
   cost_.precision -= half.transpose() * half;
   cost_.precision.diagonal() = cost_.precision.diagonal().cwiseMax(kLeastLeft * before);
   cost_.gradient -= half.transpose() * half_gradient;
-  cost_.constant += 0.5 * (log_determinant(*factor) - half_gradient.squaredNorm());
 }
 
 double AxisEvidence::log_evidence(const Prior& prior, double lambda) const {

@@ -69,7 +69,7 @@ class EvidenceSearch {
  public:
   EvidenceSearch(const std::vector<NoiseGroupEquations>& equations, const Eigen::VectorXd& z0,
                  const GaussianPrior& prior, const EvidenceOptions& options,
-                 const std::vector<SmoothingTerm>& terms, const std::vector<double>& scale)
+                 const std::vector<SmoothingTerm>& terms)
       : equations_(equations), z0_(z0), prior_(prior), options_(options) {
     for (std::size_t t = 0; t < terms.size(); ++t) {
       stretches_.push_back({&terms[t], terms[t].offset});
@@ -83,7 +83,6 @@ class EvidenceSearch {
       const bool alone = is_rotary(functions.axis);
       groups_[alone ? functions : AxisFunctions{}].push_back(functions);
     }
-    if (!options.variance_components && !stretches_.empty()) integrate_out_what_is_not_smoothed(scale);
   }
 
   /// Returns log evidence.
@@ -106,17 +105,8 @@ class EvidenceSearch {
   }
 
  private:
-  /// Where no scale changes, the same for all amplitudes.
-  void integrate_out_what_is_not_smoothed(const std::vector<double>& scale) {
-    const AxisEvidence smoothed(readings_and_priors(scale), z0_, stretches_);
-    at_held_scales_ = smoothed.cost();
-    z0_ = smoothed.z0();
-    stretches_ = smoothed.stretches();
-  }
-
   /// Readings at their scales and priors, without smoothing.
   Quadratic readings_and_priors(const std::vector<double>& scale) const {
-    if (at_held_scales_) return *at_held_scales_;
     Quadratic total{prior_.precision, prior_.gradient(z0_), prior_.cost(z0_)};
     for (std::size_t g = 0; g < equations_.size(); ++g) {
       const double weight = 1.0 / (scale[g] * scale[g]);
@@ -315,12 +305,10 @@ class EvidenceSearch {
   }
 
   const std::vector<NoiseGroupEquations>& equations_;
-  Eigen::VectorXd z0_;
+  const Eigen::VectorXd& z0_;
   const GaussianPrior& prior_;
   const EvidenceOptions& options_;
   std::vector<Stretch> stretches_;  ///< one per term
-  /// Of the coordinates that are smoothed, where scales are held.
-  std::optional<Quadratic> at_held_scales_;
   std::vector<std::size_t> surfaces_;
   std::map<AxisFunctions, std::vector<std::size_t>> axes_;
   std::map<AxisFunctions, std::vector<AxisFunctions>> groups_;  ///< linear axes under X, rotary ones each
@@ -337,7 +325,7 @@ EvidenceState maximise_evidence(const std::vector<NoiseGroupEquations>& equation
     at.prior.push_back(term.prior);
     at.lambda.push_back(term.lambda);
   }
-  const double log_evidence = EvidenceSearch(equations, z0, prior, options, terms, at.scale).run(at);
+  const double log_evidence = EvidenceSearch(equations, z0, prior, options, terms).run(at);
   for (std::size_t t = 0; t < terms.size(); ++t) {
     terms[t].shape = at.shape[t];
     terms[t].prior = at.prior[t];

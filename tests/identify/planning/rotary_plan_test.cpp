@@ -27,7 +27,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::IsSubsetOf;
 using testing_support::five_axis_machine;
 using testing_support::five_axis_truth;
 using testing_support::state_of;
@@ -321,29 +320,23 @@ std::vector<PlanOption> options_of(SmallCampaign& small) {
   return setup_options(small.settings, small.now).options;
 }
 
-/// More readings take nothing away: what is not visible with them is not without. New spheres stand apart
-/// from the one that there is.
-TEST(RotaryPlan, OneSetupMoreTakesNothingAway) {
-  for (const char* structure : kStructures) {
-    SmallCampaign small = one_small_setup(structure);
-    const std::vector<MachineError> hidden = small.now.invisible();
-    const std::vector<PlanOption> options = options_of(small);
-    ASSERT_GT(options.size(), 3U) << structure;
-    for (const PlanOption& option : options) {
-      EXPECT_THAT(option.still_invisible, IsSubsetOf(hidden)) << structure;
-      EXPECT_EQ(option.still_invisible.size() + option.made_visible.size(), hidden.size()) << structure;
-      if (!option.new_station) continue;
-      const auto place = option.what.data.at("new_place");
-      const auto& at = std::get<std::vector<FindingNumber>>(place);
-      const Eigen::Vector3d sphere_w(at[0].si, at[1].si, at[2].si);
-      const LineOfSight sight(small.settings);
-      EXPECT_GE((sphere_w - sight.textbook_stations_w(1).front()).norm(), 0.03) << structure;
-    }
+TEST(RotaryPlan, NewSpheresStandApartFromTheOneThatThereIs) {
+  SmallCampaign small = one_small_setup("w C' A' b X Y Z t");
+  const LineOfSight sight(small.settings);
+  const Eigen::Vector3d there_w = sight.textbook_stations_w(1).front();
+  std::size_t spheres = 0;
+  for (const PlanOption& option : options_of(small)) {
+    if (!option.new_station) continue;
+    ++spheres;
+    const auto place = option.what.data.at("new_place");
+    const auto& at = std::get<std::vector<FindingNumber>>(place);
+    EXPECT_GE((Eigen::Vector3d(at[0].si, at[1].si, at[2].si) - there_w).norm(), 0.03);
   }
+  EXPECT_GT(spheres, 0U);
 }
 
-/// The same where the rank analysis of more readings says otherwise: here of errors that one sphere and one
-/// tool do not tell, and that are said to be visible.
+/// More readings take nothing away, where the rank analysis of all of them says otherwise, too: here of
+/// errors that one sphere and one tool do not tell, and that are said to be visible.
 TEST(RotaryPlan, WhatIsVisibleStaysSo) {
   SmallCampaign small = one_small_setup("w C' A' b X Y Z t");
   ASSERT_GT(small.now.invisible().size(), 5U);

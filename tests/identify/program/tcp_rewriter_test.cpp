@@ -303,6 +303,9 @@ TEST(TcpRewriter, RefusesWhatItCannotFollow) {
   TcpRewriteOptions only_c;
   only_c.identified = {false, true, true};
   EXPECT_THAT(refused(begin + "G1 A-5 F100\n", only_c), HasSubstr("errors of axis A were not identified"));
+  only_c.reference[0] = -5.0 * kRadianPerDegree;
+  EXPECT_THAT(refused(begin, only_c), HasSubstr("it does not stand at -5 deg"));
+  EXPECT_EQ(refused("G21 G90 G54\nG0 A-5 C0\nG43.4 H1\nG0 X0 Y0 Z0\nG1 X10 C30 F100\nG49\n", only_c), "");
   for (const char* program : {"G2 X1\n", "G91\n"})
     EXPECT_THAT(testing::refusal([&] { tcp_rewritten(begin + program, result); }), HasSubstr("part.ngc:5"));
 }

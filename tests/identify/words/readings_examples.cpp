@@ -3,6 +3,20 @@
 #include "tests/identify/words/finding_examples.h"
 
 namespace volcal {
+namespace {
+
+Finding rows_repeated(bool at_other_times) {
+  return {FindingCode::ReadingsRowsRepeated,
+          {{"setup", "X"},
+           {"file", "line.csv"},
+           {"repeats", std::int64_t{5}},
+           {"rows", std::int64_t{10}},
+           {"line", std::int64_t{7}},
+           {"first_line", std::int64_t{2}},
+           {"at_other_times", at_other_times}}};
+}
+
+}  // namespace
 
 std::vector<WordedFinding> examples_of_readings() {
   return {
@@ -18,24 +32,10 @@ std::vector<WordedFinding> examples_of_readings() {
          {"milliseconds", true}}},
        "setup \"X\": t \"ms\", Remark of line.csv are not read; to read what is meant, add columns = { "
        "time_s = \"t \\\"ms\\\"\" } and scale = { time_s = 0.001 }"},
-      {{FindingCode::ReadingsRowsRepeated,
-        {{"setup", "X"},
-         {"file", "line.csv"},
-         {"repeats", std::int64_t{5}},
-         {"rows", std::int64_t{10}},
-         {"line", std::int64_t{7}},
-         {"first_line", std::int64_t{2}},
-         {"at_other_times", false}}},
+      {rows_repeated(false),
        "setup \"X\" (line.csv): 5 of 10 rows repeat an earlier row in every column, line 7 that of line 2: "
        "each counts as a measurement of its own; remove the copies"},
-      {{FindingCode::ReadingsRowsRepeated,
-        {{"setup", "X"},
-         {"file", "line.csv"},
-         {"repeats", std::int64_t{5}},
-         {"rows", std::int64_t{10}},
-         {"line", std::int64_t{7}},
-         {"first_line", std::int64_t{2}},
-         {"at_other_times", true}}},
+      {rows_repeated(true),
        "setup \"X\" (line.csv): 5 of 10 rows repeat an earlier row in all but its time, line 7 that of line "
        "2: "
        "each counts as a measurement of its own; remove the copies, unless the readings were computed "

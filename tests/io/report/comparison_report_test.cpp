@@ -8,6 +8,7 @@
 namespace volcal {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -65,6 +66,21 @@ std::vector<ResidualRecord> records_of(const Campaign& campaign, double scale) {
     }
   }
   return records;
+}
+
+/// What scans find is opposed to a model that explains the readings, and comes on top of one that does not.
+TEST(FailureSentence, OpposesScansToModelsThatExplainTheReadings) {
+  const Campaign campaign = campaign_of_two_setups();
+  auto right = compared_model("right", campaign, records_of(campaign, 1.0));
+  auto wrong = compared_model("wrong", campaign, records_of(campaign, 3.0));
+  Screening found;
+  found.contradicts = true;
+  found.leading = "EAX by z^2";
+  for (ComparedModel* model : {&right, &wrong}) model->screening = found;
+  EXPECT_THAT(failure_sentence(right),
+              AllOf(HasSubstr(". But "), HasSubstr("EAX by z^2"), Not(HasSubstr("Besides"))));
+  EXPECT_THAT(failure_sentence(wrong),
+              AllOf(HasSubstr(". Besides, "), HasSubstr("EAX by z^2"), Not(HasSubstr("But "))));
 }
 
 TEST(FailureSentence, SaysThatNothingIsWrong) {

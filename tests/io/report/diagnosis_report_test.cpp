@@ -13,6 +13,7 @@
 #include "tests/io/report/drawing.h"
 #include "tests/support/hand_made_diagnosis.h"
 #include "volcal/identify/report/page.h"
+#include "volcal/identify/report/text/criticism/diagnosis_text.h"
 
 namespace volcal {
 namespace {
@@ -326,6 +327,20 @@ TEST_F(DiagnosisReport, IsOnePageWithoutMarkupInItsData) {
   const std::string page = report_html(diagnosis_, campaign_);
   EXPECT_THAT(page, HasSubstr("VMC &lt;1&gt; – volcal diagnosis"));
   EXPECT_THAT(page, HasSubstr("VMC \\u003c1>"));
+}
+
+/// Three outliers of the diagnosis by hand, which a fit takes back unless it is told not to.
+TEST(DiagnosisText, SaysWhichReadingsAFitWouldTakeBack) {
+  Diagnosis diagnosis = testing::hand_made_diagnosis();
+  EXPECT_EQ(
+      removed_in_fit_text(diagnosis, "campaign.toml", "extended.toml"),
+      "! the diagnosis left out 3 readings as outliers; `volcal fit` takes them back and finds other values "
+      "unless it removes them, too\n"
+      "next: volcal fit campaign.toml --model extended.toml --outliers remove -o RESULT\n");
+  diagnosis.removed_readings.resize(1);
+  EXPECT_THAT(removed_in_fit_text(diagnosis, "c", "m"), HasSubstr("left out 1 reading as outlier;"));
+  diagnosis.removed_readings.clear();
+  EXPECT_EQ(removed_in_fit_text(diagnosis, "c", "m"), "");
 }
 
 }  // namespace

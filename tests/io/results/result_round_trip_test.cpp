@@ -176,11 +176,23 @@ TEST(ResultJson, ReturnsTheNoise) {
 TEST(ResultJson, KeepsThatStatedErrorsHaveNoCovariance) {
   FitResult stated = small_result();
   stated.covariance.resize(0, 0);
+  EXPECT_THROW(result_from_json(result_json(stated), "result.json"), InputError)
+      << "of readings it must have one";
+  stated.setups.clear();
   EXPECT_EQ(nlohmann::json::parse(result_json(stated)).at("covariance").size(), 0u);
   const FitResult read = result_from_json(result_json(stated), "result.json");
   EXPECT_EQ(read.covariance.size(), 0);
   expect_same_bits(read.parameters, stated.parameters);
   EXPECT_EQ(parameter_variance(read, 0), 0.0);
+}
+
+TEST(ResultJson, KeepsWhereRotaryAxesStood) {
+  FitResult result = small_result();
+  result.standing = {{AxisName::C, 1.25}};
+  EXPECT_EQ(result_from_json(result_json(result), "result.json").standing, result.standing);
+  auto json = nlohmann::json::parse(result_json(result));
+  json["standing"]["X"] = 0.0;
+  EXPECT_THROW(result_from_json(json.dump(), "result.json"), InputError);
 }
 
 TEST(ResultJson, KeepsNumbersThatAreNotFinite) {

@@ -353,10 +353,9 @@ std::string removed_in_fit_text(const Diagnosis& diagnosis, const std::string& c
   const std::size_t removed = diagnosis.removed_readings.size();
   if (removed == 0) return "";
   return fmt::format(
-      "! the diagnosis left out {} reading{} as outlier{}; `volcal fit` takes them back and finds other "
-      "values "
-      "unless it removes them, too\nnext: volcal fit {} --model {} --outliers remove -o RESULT\n",
-      removed, removed == 1 ? "" : "s", removed == 1 ? "" : "s", campaign, model);
+      "! the diagnosis left out {0} reading{1} as outlier{1}; `volcal fit` takes them back and finds other "
+      "values unless it removes them, too\nnext: volcal fit {2} --model {3} --outliers remove -o RESULT\n",
+      removed, removed == 1 ? "" : "s", campaign, model);
 }
 
 }  // namespace volcal

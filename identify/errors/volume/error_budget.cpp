@@ -202,7 +202,6 @@ ErrorBudget error_budget(const FitResult& result, const Tool& tool, const Condit
   for (const Axis& axis : result.machine.axes) {
     if (is_rotary(axis.name) && std::ranges::find(budget.turned, axis.name) == budget.turned.end())
       budget.at_rest.push_back(axis.name);
-    if (result.standing.contains(axis.name)) budget.stood[axis.name] = result.standing.at(axis.name);
   }
   const auto line = [&](const std::string& name, const Field& field, const std::vector<int>& parameters) {
     BudgetLine made = line_of(name, field, whole.field, volume.inside());

@@ -11,7 +11,6 @@
 /// (<e, e> + u^2); they sum to 1 where the contributions are uncorrelated, as at the design stage.
 
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,9 +45,8 @@ struct ErrorBudget {
   /// RMS of the whole error that 95 % of such machines do not exceed, m: of normally distributed parameters
   /// whose expectation is no error; 0 where there is an expected error or no uncertainty.
   double rms_95 = 0.0;
-  std::map<AxisName, double> stood;  ///< of those at rest, where they stood in the campaign, rad
-  std::vector<AxisName> turned;      ///< rotary axes over whose travel it is
-  std::vector<AxisName> at_rest;  ///< rotary axes that no pose turns, whose errors away from 0 are not in it
+  std::vector<AxisName> turned;   ///< rotary axes over whose travel it is
+  std::vector<AxisName> at_rest;  ///< rotary axes at 0 in all poses, whose errors away from 0 are not in it
 };
 
 /// Where rotary axes stand in the poses of a budget.

@@ -94,14 +94,9 @@ std::string rotary_axes_text(const ErrorBudget& budget, const std::string& why_a
   if (!budget.turned.empty())
     text += fmt::format("over the travel of {} as well, a turn at most, in workpiece coordinates\n",
                         letters(budget.turned));
-  std::string at_rest;
-  for (const AxisName axis : budget.at_rest) {
-    const auto stood = budget.stood.find(axis);
-    at_rest += fmt::format("{}{} at {:.6g}", at_rest.empty() ? "" : ", ", letter_of(axis),
-                           stood == budget.stood.end() ? 0.0 : stood->second / kRadianPerDegree + 0.0);
-  }
-  if (!at_rest.empty())
-    text += fmt::format("! {} in all poses: {}, and are not in it\n", at_rest, why_at_rest);
+  if (!budget.at_rest.empty())
+    text +=
+        fmt::format("! {} at 0 in all poses: {}, and are not in it\n", letters(budget.at_rest), why_at_rest);
   return text;
 }
 

@@ -168,9 +168,9 @@ std::string free_combination_text(const std::vector<Finding>& invisible) {
   if (errors.size() < 2) return "";
   const std::string names = list_in_words(errors);
   return "Only combinations of " + names +
-         " are free; the readings determine the rest of them. Do not switch " +
-         "them off in the model: the fit would lose what the readings determine. [priors] state how large " +
-         "errors are and do not make them visible.\n";
+         " are free; the readings determine the rest of them. Do not switch them off in the model: the fit "
+         "would lose what the readings determine. [priors] state how large errors are and do not make them "
+         "visible.\n";
 }
 
 }  // namespace

@@ -153,6 +153,17 @@ std::string directions_derived(const Finding& finding) {
       join_names(finding.texts("columns")), join_names(finding.texts("setups")));
 }
 
+std::string centre_assumed(const Finding& finding) {
+  const std::vector<std::string>& axes = finding.texts("axes");
+  const bool several = axes.size() > 1;
+  return fmt::format(
+      "the machine file does not say where the {} of {} {}: {} through the machine's origin; state a point "
+      "of "
+      "{}, centre_mm below [axes.{}]",
+      several ? "lines" : "line", join_names(axes), several ? "are" : "is",
+      several ? "they are taken to pass" : "it is taken to pass", several ? "each" : "it", axes.front());
+}
+
 std::string left_out(const Finding& finding) {
   const std::vector<std::int64_t> rows = finding.counts("rows");
   return fmt::format("setup \"{}\" leaves out {} {}: {}", finding.text("setup"),
@@ -174,6 +185,7 @@ std::span<const SentenceMaker> campaign_sentences() {
       {FindingCode::ReadingsMisread, misread},
       {FindingCode::ReadingsDuplicated, duplicated},
       {FindingCode::ReadingsDirectionsDerived, directions_derived},
+      {FindingCode::MachineCentreAssumed, centre_assumed},
       {FindingCode::ReadingsLeftOut, left_out},
   });
   return kSentences;

@@ -24,6 +24,7 @@ constexpr auto kFindingCodes = [] {
       {ReadingsMisread, "readings.misread", Severity::Warning},
       {ReadingsDuplicated, "readings.duplicated", Severity::Warning},
       {ReadingsDirectionsDerived, "readings.directions-derived", Severity::Note},
+      {MachineCentreAssumed, "machine.centre-assumed", Severity::Note},
       {ReadingsLeftOut, "readings.left-out", Severity::Note},
       {ReadingsFlagged, "readings.flagged", Severity::Warning},
       {ReadingsRemoved, "readings.removed", Severity::Warning},

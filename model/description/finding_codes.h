@@ -20,6 +20,7 @@ enum class FindingCode : std::uint8_t {
   ReadingsMisread,
   ReadingsDuplicated,
   ReadingsDirectionsDerived,
+  MachineCentreAssumed,
   ReadingsLeftOut,
   ReadingsFlagged,
   ReadingsRemoved,

@@ -46,6 +46,8 @@ struct Axis {
   Eigen::Vector3d reference_point = Eigen::Vector3d::Zero();
   /// Rotary: a point of the nominal axis line, machine coordinates with all axes at 0.
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  /// Rotary: nobody stated `centre`, and the origin stands for it.
+  bool centre_is_assumed = false;
   /// Rotary: whether it turns without end, where the owner says so; see Machine::is_endless().
   std::optional<bool> endless;
   std::optional<ScaleExpansion> expansion;

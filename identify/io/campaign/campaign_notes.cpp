@@ -10,6 +10,7 @@
 #include "volcal/identify/standards/approach.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/unknowns.h"
 
 namespace volcal {
 namespace {
@@ -108,6 +109,14 @@ void derive_directions(const std::vector<bool>& derive, Campaign& campaign) {
   for (const std::size_t i : setups) names.push_back(printable(campaign.setups[i].name));
   campaign.notes.push_back(
       {FindingCode::ReadingsDirectionsDerived, {{"columns", columns}, {"setups", names}}});
+}
+
+void note_assumed_centres(Campaign& campaign) {
+  std::vector<std::string> axes;
+  for (const AxisName axis : moving_rotary_axes(campaign)) {
+    if (campaign.machine.axis(axis).centre_is_assumed) axes.emplace_back(1, letter_of(axis));
+  }
+  if (!axes.empty()) campaign.notes.push_back({FindingCode::MachineCentreAssumed, {{"axes", axes}}});
 }
 
 }  // namespace volcal

@@ -1,6 +1,7 @@
 #pragma once
 /// What is noticed while a campaign is read and is no error: columns that nobody reads, readings that look
-/// like a slip, directions of approach that no file records. Each adds findings to `Campaign::notes`.
+/// like a slip, directions of approach that no file records, axes of rotation that stand nobody says where.
+/// Each adds findings to `Campaign::notes`.
 
 #include <vector>
 
@@ -21,5 +22,8 @@ void note_doubtful_readings(Campaign& campaign);
 /// `derive` says so by setup, and notes it once. Directions of an axis that would be the same in the whole
 /// campaign stay unknown: nothing can be learnt from them.
 void derive_directions(const std::vector<bool>& derive, Campaign& campaign);
+
+/// Notes rotary axes that move although nobody stated where they stand.
+void note_assumed_centres(Campaign& campaign);
 
 }  // namespace volcal

@@ -114,6 +114,7 @@ class CampaignReader {
       note_unused_columns(unused[i], campaign.setups[i], campaign);
     note_doubtful_readings(campaign);
     derive_directions(derive, campaign);
+    note_assumed_centres(campaign);
     return campaign;
   }
 

@@ -89,6 +89,7 @@ class MachineReader {
     }
     if (rotary) {
       axis.centre = position_or_zero(table, "centre_mm");
+      axis.centre_is_assumed = !table.has("centre_mm");
       read_endless(table, axis);
     } else {
       axis.reference_point = position_or_zero(table, "reference_point_mm");

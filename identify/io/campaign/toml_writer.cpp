@@ -40,9 +40,9 @@ std::string axis_toml(const Axis& axis) {
   std::string text = fmt::format("\n[axes.{}]\n", letter_of(axis.name));
   text += fmt::format("travel_{} = {}\n", unit, array(std::array{axis.travel_min, axis.travel_max}, factor));
   text += fmt::format("home_{} = {}\n", unit, edge_number(axis.home, factor));
-  text += rotary ? "centre_mm = " + array(axis.centre, kMetrePerMillimetre)
-                 : "reference_point_mm = " + array(axis.reference_point, kMetrePerMillimetre);
-  text += "\n";
+  if (!rotary) text += "reference_point_mm = " + array(axis.reference_point, kMetrePerMillimetre) + "\n";
+  if (rotary && !axis.centre_is_assumed)
+    text += "centre_mm = " + array(axis.centre, kMetrePerMillimetre) + "\n";
   if (axis.endless) text += fmt::format("endless = {}\n", *axis.endless);
   if (axis.expansion) {
     text += fmt::format("expansion_um_per_m_K = {}\nexpansion_sigma_um_per_m_K = {}\ntemperature = {}\n",

@@ -67,6 +67,7 @@ Campaign imported_campaign(const std::vector<ImportedFile>& files, const Machine
     check_setup(campaign, setup);
   }
   note_doubtful_readings(campaign);
+  note_assumed_centres(campaign);
   campaign.file = "campaign.toml";
   return campaign;
 }

@@ -98,6 +98,12 @@ std::vector<WordedFinding> examples_of_readings() {
        "directions of approach that the files do not record (dir_x, dir_y in X) follow from the order of the "
        "readings along each line; if they do not stand in the order in which they were measured, set "
        "directions = \"as-recorded\""},
+      {{FindingCode::MachineCentreAssumed, {{"axes", Texts{"C"}}}},
+       "the machine file does not say where the line of C is: it is taken to pass through the machine's "
+       "origin; state a point of it, centre_mm below [axes.C]"},
+      {{FindingCode::MachineCentreAssumed, {{"axes", Texts{"C", "A"}}}},
+       "the machine file does not say where the lines of C, A are: they are taken to pass through the "
+       "machine's origin; state a point of each, centre_mm below [axes.C]"},
       {{FindingCode::ReadingsLeftOut, {{"setup", "X"}, {"rows", Integers{8}}, {"reason", "slip"}}},
        "setup \"X\" leaves out row 8: slip"},
       {{FindingCode::ReadingsLeftOut, {{"setup", "X"}, {"rows", Integers{8, 9, 10}}, {"reason", "slip"}}},

@@ -11,6 +11,8 @@
 #include "tests/support/broken_campaigns.h"
 #include "tests/support/scratch_folder.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/machine_reader.h"
+#include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/words/sentences.h"
 
 namespace volcal {
@@ -264,6 +266,32 @@ TEST_F(NotesTest, NamesOfOtherAxesAreNoSlips) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.remedy(), Not(HasSubstr("did you mean")));
   }
+}
+
+/// A table C turns below a displacement along X; `of_c`: further lines of [axes.C].
+Campaign turned_table(const std::string& of_c, double last_deg) {
+  const std::string axes =
+      "[axes.X]\ntravel_mm = [0, 500]\nhome_mm = 0\n[axes.C]\ntravel_deg = [0, 360]\nhome_deg = 0\n" + of_c;
+  const Machine machine = parse_machine("format = \"volcal-machine-1\"\nstructure = \"w C' b X t\"\n" + axes +
+                                            "[tools.probe]\noffset_mm = [0, 0, 0]\n",
+                                        "machine.toml");
+  const std::string setup =
+      "[[setups]]\nname = \"X\"\ninstrument = \"displacement\"\ndirection = [1, 0, 0]\n"
+      "noise = { constant_um = 1.0 }\ndirections = \"as-recorded\"\n";
+  const std::vector<double> x_mm{0.0, 100.0}, c_deg{0.0, last_deg};
+  const std::vector<NumberColumn> columns{{"x_mm", x_mm}, {"c_deg", c_deg}, {"displacement_mm", x_mm}};
+  return campaign_in_memory("format = \"volcal-campaign-1\"\n" + setup, "campaign", machine, {columns});
+}
+
+TEST(CentresOfRotation, AreNotedWhereNobodyStatesThem) {
+  EXPECT_THAT(sentences(turned_table("", 90.0).notes), ElementsAre(HasSubstr("where the line of C is")));
+  EXPECT_THAT(turned_table("centre_mm = [0, 0, 0]\n", 90.0).notes, IsEmpty());
+  EXPECT_THAT(turned_table("", 0.0).notes, IsEmpty()) << "C stands still";
+}
+
+TEST(CentresOfRotation, AreWrittenWhereTheyWereStated) {
+  EXPECT_THAT(machine_toml(turned_table("", 90.0).machine), Not(HasSubstr("centre_mm")));
+  EXPECT_THAT(machine_toml(turned_table("centre_mm = [0, 0, 0]\n", 90.0).machine), HasSubstr("centre_mm"));
 }
 
 }  // namespace

@@ -7,21 +7,6 @@
 #include "volcal/identify/solve/fit.h"
 
 namespace volcal {
-namespace {
-
-/// The values of a column whose rows are not marked; a column that the file lacks stays empty.
-template <class T>
-void drop(std::vector<T>& column, const std::vector<bool>& marked) {
-  if (column.empty()) return;
-  std::size_t kept = 0;
-  for (std::size_t row = 0; row < marked.size(); ++row) {
-    if (!marked[row]) column[kept++] = column[row];
-  }
-  column.resize(kept);
-}
-
-}  // namespace
-
 std::vector<std::vector<bool>> judging_rows(const Campaign& campaign, double share) {
   std::vector<std::vector<bool>> rows = heldout_rows(campaign, share);
   for (std::vector<bool>& setup : rows) {
@@ -30,22 +15,16 @@ std::vector<std::vector<bool>> judging_rows(const Campaign& campaign, double sha
   return rows;
 }
 
-Campaign without_rows(const Campaign& campaign, const std::vector<std::vector<bool>>& left_out) {
+Campaign without_rows(const Campaign& campaign, const std::vector<std::vector<bool>>& marked) {
   Campaign reduced = campaign;
-  for (std::size_t setup = 0; setup < reduced.setups.size(); ++setup) {
-    Readings& readings = reduced.setups[setup].readings;
-    const std::vector<bool>& marked = left_out[setup];
-    for (auto& column : readings.position) drop(column, marked);
-    for (auto& column : readings.value) drop(column, marked);
-    for (auto& column : readings.given) drop(column, marked);
-    for (auto& column : readings.direction) drop(column, marked);
-    for (auto& [channel, column] : readings.temperature) drop(column, marked);
-    drop(readings.sigma, marked);
-    drop(readings.time, marked);
-    drop(readings.line, marked);
-    drop(readings.run, marked);
-    drop(readings.feed, marked);
-    drop(readings.source_line, marked);
+  for (std::size_t i = 0; i < reduced.setups.size(); ++i) {
+    Setup& setup = reduced.setups[i];
+    std::erase_if(setup.left_out, [&](const LeftOutReading& reading) { return marked[i][reading.row]; });
+    for (std::size_t row = 0; row < setup.readings.size(); ++row) {
+      if (!marked[i][row]) continue;
+      for (std::size_t channel = 0; channel < setup.readings.channels(); ++channel)
+        setup.left_out.push_back({row, channel, "held out"});
+    }
   }
   return reduced;
 }

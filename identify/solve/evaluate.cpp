@@ -371,20 +371,12 @@ FitResult as_fitted(const Evaluation& evaluation, const FitResult& identified) {
   return result;
 }
 
-namespace {
-
-struct Spread {
-  double lengths = 0.0, angles = 0.0, max_length = 0.0, max_angle = 0.0;
-  std::size_t length_count = 0, angle_count = 0;
-};
-
-/// RMS and largest |e|: the channels of a vector reading are one value.
-Spread spread_of(const Campaign& campaign, const std::vector<ResidualRecord>& records) {
+ErrorSizes error_sizes(const Campaign& campaign, const std::vector<ResidualRecord>& records) {
   const std::vector<std::vector<bool>> angles = angle_channels(campaign);
   const auto is_angle = [&](const ResidualRecord& record) {
     return angles[record.setup][static_cast<std::size_t>(record.channel)];
   };
-  Spread spread;
+  ErrorSizes sizes;
   for (std::size_t i = 0; i < records.size();) {
     double squares = 0.0;
     bool counts = false;
@@ -399,17 +391,18 @@ Spread spread_of(const Campaign& campaign, const std::vector<ResidualRecord>& re
     } while (i < records.size() && records[i].setup == first.setup && records[i].row == first.row &&
              is_angle(records[i]) == angle);
     if (!counts) continue;
-    (angle ? spread.angles : spread.lengths) += squares;
-    (angle ? spread.max_angle : spread.max_length) =
-        std::max(angle ? spread.max_angle : spread.max_length, std::sqrt(squares));
-    ++(angle ? spread.angle_count : spread.length_count);
+    ErrorSize& size = angle ? sizes.angles : sizes.lengths;
+    size.rms += squares;
+    size.max = std::max(size.max, std::sqrt(squares));
+    ++size.count;
   }
-  if (spread.length_count > 0)
-    spread.lengths = std::sqrt(spread.lengths / static_cast<double>(spread.length_count));
-  if (spread.angle_count > 0)
-    spread.angles = std::sqrt(spread.angles / static_cast<double>(spread.angle_count));
-  return spread;
+  for (ErrorSize* size : {&sizes.lengths, &sizes.angles}) {
+    if (size->count > 0) size->rms = std::sqrt(size->rms / static_cast<double>(size->count));
+  }
+  return sizes;
 }
+
+namespace {
 
 std::vector<Finding> contradicted_nuisance(const Evaluation& evaluation) {
   std::vector<ParameterBlock> blocks = evaluation.layout.blocks;
@@ -428,18 +421,18 @@ Validation validate(const Campaign& campaign, const FitResult& result, int threa
   validation.after = evaluate_model(campaign, model, is_exact ? nullptr : &result, threads);
   validation.contradicted = contradicted_nuisance(validation.after);
   ValidationFigures& figures = validation.figures;
-  const Spread before = spread_of(campaign, validation.before.residuals);
-  const Spread after = spread_of(campaign, validation.after.residuals);
-  figures.rms_before = before.lengths;
-  figures.rms_after = after.lengths;
-  figures.max_before = before.max_length;
-  figures.max_after = after.max_length;
-  figures.angle_rms_before = before.angles;
-  figures.angle_rms_after = after.angles;
-  figures.angle_max_before = before.max_angle;
-  figures.angle_max_after = after.max_angle;
-  figures.lengths = after.length_count;
-  figures.angles = after.angle_count;
+  const ErrorSizes before = error_sizes(campaign, validation.before.residuals);
+  const ErrorSizes after = error_sizes(campaign, validation.after.residuals);
+  figures.rms_before = before.lengths.rms;
+  figures.rms_after = after.lengths.rms;
+  figures.max_before = before.lengths.max;
+  figures.max_after = after.lengths.max;
+  figures.angle_rms_before = before.angles.rms;
+  figures.angle_rms_after = after.angles.rms;
+  figures.angle_max_before = before.angles.max;
+  figures.angle_max_after = after.angles.max;
+  figures.lengths = after.lengths.count;
+  figures.angles = after.angles.count;
   std::size_t inside = 0, judged = 0;
   double chi2 = 0.0;
   for (std::size_t i = 0; i < validation.after.residuals.size(); ++i) {

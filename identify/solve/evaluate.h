@@ -55,6 +55,22 @@ Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model,
 /// criticises a fit can then criticise it. Of its errors nothing is open.
 FitResult as_fitted(const Evaluation& evaluation, const FitResult& identified);
 
+/// Size of errors of one kind, lengths (m) or angles (rad); 0 without any.
+struct ErrorSize {
+  std::size_t count = 0;
+  double rms = 0.0;
+  double max = 0.0;
+};
+
+struct ErrorSizes {
+  ErrorSize lengths;
+  ErrorSize angles;
+};
+
+/// The channels of a vector reading are one value, |e|; angles apart. Readings that are left out do not
+/// count.
+ErrorSizes error_sizes(const Campaign& campaign, const std::vector<ResidualRecord>& records);
+
 /// Figures of `volcal validate`. Vectors count as one value, |e|; angles apart.
 struct ValidationFigures {
   double rms_before = 0.0;  ///< m

@@ -100,13 +100,13 @@ std::optional<Verified> verify(const ValidateArguments& arguments, const FitResu
 
 std::string compensated_text(const Verified& verified) {
   std::string text = "Measured with the tables active, off the machine without errors\n";
-  const auto add = [&](const ResidualSize& size, const char* what, const char* unit) {
+  const auto add = [&](const ErrorSize& size, const char* what, const char* unit) {
     if (size.count > 0)
       text += fmt::format("  {} {}: RMS {:.3f}, largest {:.3f} {}\n", size.count, what, size.rms * kPerMicro,
                           size.max * kPerMicro, unit);
   };
-  add(verified.measured.lengths, "lengths and vectors", "um");
-  add(verified.measured.angles, "angles", "urad");
+  add(verified.measured.sizes.lengths, "lengths and vectors", "um");
+  add(verified.measured.sizes.angles, "angles", "urad");
   return text + fmt::format(
                     "Below: the same readings less what the tables corrected{}, so that the model predicts "
                     "them\n\n",
@@ -133,8 +133,12 @@ int run_validate(const ValidateArguments& arguments) {
   std::ranges::copy(validation.contradicted, std::back_inserter(campaign.notes));
   auto figures = validation_json(validation.figures, fitted);
   if (compensated) {
-    figures["compensated_rms_um"] = compensated->measured.lengths.rms * kPerMicro;
-    figures["compensated_max_um"] = compensated->measured.lengths.max * kPerMicro;
+    figures["compensated_rms_um"] = compensated->measured.sizes.lengths.rms * kPerMicro;
+    figures["compensated_max_um"] = compensated->measured.sizes.lengths.max * kPerMicro;
+    if (const ErrorSize& angles = compensated->measured.sizes.angles; angles.count > 0) {
+      figures["compensated_angle_rms_urad"] = angles.rms * kPerMicro;
+      figures["compensated_angle_max_urad"] = angles.max * kPerMicro;
+    }
   }
   add_notes(campaign.notes, figures);
   const std::string json = json_text(figures, 2) + '\n';

@@ -1,15 +1,14 @@
 #include "volcal/identify/report/values/measured_error.h"
 
 #include "volcal/identify/result/fitted_readings.h"
-#include "volcal/identify/solve/evaluate.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
 
 MeasuredError measured_error(const Campaign& campaign, int threads) {
   const Evaluation evaluation = evaluate_model(campaign, nominal_model(), nullptr, threads);
-  const ComparisonCell total = compare(campaign, evaluation.residuals).total;
-  return {campaign.file, campaign.active_compensations, campaign.setups.size(), total.lengths, total.angles};
+  return {campaign.file, campaign.active_compensations, campaign.setups.size(),
+          error_sizes(campaign, evaluation.residuals)};
 }
 
 void require_campaign_of(const FitResult& result, const Campaign& campaign) {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "volcal/identify/result/result.h"
-#include "volcal/identify/standards/comparison.h"
+#include "volcal/identify/solve/evaluate.h"
 #include "volcal/model/description/campaign.h"
 
 namespace volcal {
@@ -15,8 +15,7 @@ struct MeasuredError {
   std::string campaign;              ///< file
   std::string active_compensations;  ///< while it was measured, in words; empty = not stated
   std::size_t setups = 0;
-  ResidualSize lengths;  ///< readings minus those of the machine without errors, m
-  ResidualSize angles;   ///< rad
+  ErrorSizes sizes;  ///< of readings minus those of the machine without errors
 };
 
 /// Throws InputError where the campaign cannot be evaluated.

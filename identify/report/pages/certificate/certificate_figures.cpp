@@ -67,7 +67,7 @@ Json rotary_left_rows(const MadeTables& tables) {
 }
 
 Json measured_row(const char* when, const MeasuredError& measured) {
-  const auto size = [](const ResidualSize& each) -> Json {
+  const auto size = [](const ErrorSize& each) -> Json {
     if (each.count == 0) return nullptr;
     return {{"count", each.count},
             {"rms", rounded(each.rms * kPerMicro, 4)},
@@ -77,8 +77,8 @@ Json measured_row(const char* when, const MeasuredError& measured) {
           {"campaign", measured.campaign},
           {"active", measured.active_compensations},
           {"setups", measured.setups},
-          {"lengths", size(measured.lengths)},
-          {"angles", size(measured.angles)}};
+          {"lengths", size(measured.sizes.lengths)},
+          {"angles", size(measured.sizes.angles)}};
 }
 
 Json identified_rows(const FitResult& result) {

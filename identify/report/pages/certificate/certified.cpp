@@ -127,9 +127,10 @@ Json certified_figures(const CertificateView& certificate) {
   if (check.identification_u > 0.0)
     add("Expected on the machine", check.expected_rms(),
         fmt::format("with u = {:.2f} µm of what was identified", check.identification_u * kPerMicro));
-  if (certificate.after && certificate.after->lengths.count > 0)
-    add("Measured with the tables", certificate.after->lengths.rms,
-        fmt::format("{:.2f} µm before, deviations of readings", certificate.before.lengths.rms * kPerMicro));
+  if (certificate.after && certificate.after->sizes.lengths.count > 0)
+    add("Measured with the tables", certificate.after->sizes.lengths.rms,
+        fmt::format("{:.2f} µm before, deviations of readings",
+                    certificate.before.sizes.lengths.rms * kPerMicro));
   return list;
 }
 

@@ -79,10 +79,6 @@ NoiseProblem problem_of(const LinearModel& model, const Campaign& campaign, cons
                                  DatumSpace(layout, campaign.machine, result.parameters));
 }
 
-double root_mean_square(const Eigen::VectorXd& moved) {
-  return moved.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(1, moved.size())));
-}
-
 std::string words_of(const GenericTest& test) {
   UnknownFinding finding;
   finding.variables = test.variables;
@@ -92,15 +88,15 @@ std::string words_of(const GenericTest& test) {
   return finding.in_words() + ", along " + finding.action();
 }
 
-void consider_families(const LinearModel& model, const std::vector<Family>& families,
-                       const std::vector<FamilyTest>& tests, Leading& leading) {
+void consider_families(const LinearModel& model, const Projector& projector,
+                       const std::vector<Family>& families, const std::vector<FamilyTest>& tests,
+                       Leading& leading) {
   const double log10_count = std::log10(static_cast<double>(std::max<std::size_t>(1, tests.size())));
   for (const FamilyTest& test : tests) {
     if (test.score.dof == 0) continue;
     leading.consider(test.log10_p + log10_count, [&](Screening& found) {
-      const Family& family = families[test.family];
-      found.leading = family.label();
-      found.rms = root_mean_square(displacement(model, family, test));
+      found.leading = families[test.family].label();
+      found.rms = explained_rms(test.score.lm, model, projector);
     });
   }
 }
@@ -136,7 +132,7 @@ Screening screen(const Campaign& campaign, const FitResult& result, int threads,
   const Projector projector(problem_of(model, campaign, result), data, noise, threads, model.parts());
   const std::vector<Family> families = volcal::families(model);
   Leading leading;
-  consider_families(model, families, test_families(model, families, projector, threads), leading);
+  consider_families(model, projector, families, test_families(model, families, projector, threads), leading);
   std::vector<GenericTest> scans = generic_scan(model, scan_variables(model), projector, threads);
   std::ranges::move(wave_tests(model, projector, threads), std::back_inserter(scans));
   consider_scans(scans, leading);

@@ -74,7 +74,7 @@ double typical_sigma(const LinearModel& model) {
 }
 
 /// The best fit's size follows from the test: LM = |g~ a|^2 in units of the noise.
-double explained_rms(double lm, const Projector& projector, double typical_sigma) {
+double size_of(double lm, const Projector& projector, double typical_sigma) {
   return std::sqrt(std::max(0.0, lm) / static_cast<double>(projector.observations())) * typical_sigma;
 }
 
@@ -311,7 +311,7 @@ class GenericScanner {
     return static_cast<std::size_t>(direction_of(rotation.component)) == index_of(direction);
   }
 
-  double explained_rms(double lm) const { return volcal::explained_rms(lm, projector_, typical_sigma_); }
+  double explained_rms(double lm) const { return size_of(lm, projector_, typical_sigma_); }
 
   GenericTest polynomial(const std::vector<Variable>& names, const ScanAction& action,
                          const ScoreTest& score) const {
@@ -371,6 +371,10 @@ Eigen::MatrixXd scanned_displacements(const LinearModel& model, const std::vecto
   return moved;
 }
 
+double explained_rms(double lm, const LinearModel& model, const Projector& projector) {
+  return size_of(lm, projector, typical_sigma(model));
+}
+
 std::vector<GenericTest> wave_tests(const LinearModel& model, const Projector& projector, int threads) {
   const double log_count = std::log(static_cast<double>(projector.observations()));
   const double sigma = typical_sigma(model);
@@ -385,7 +389,7 @@ std::vector<GenericTest> wave_tests(const LinearModel& model, const Projector& p
                      wave.lm,
                      static_cast<double>(wave.dof),
                      wave.lm - (wave.dof + 1) * log_count,
-                     explained_rms(wave.projected_lm, projector, sigma),
+                     size_of(wave.projected_lm, projector, sigma),
                      wave.period,
                      wave.log10_choices});
   }

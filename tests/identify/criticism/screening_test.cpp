@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/hidden_studies.h"
 #include "volcal/model/description/finding_codes.h"
 
@@ -42,9 +44,16 @@ const Screening& screening_of_backlash() {
   return made;
 }
 
+double residual_rms(const FitResult& result) {
+  double squares = 0.0;
+  for (const ResidualRecord& record : result.residuals) squares += record.residual() * record.residual();
+  return std::sqrt(squares / static_cast<double>(result.residuals.size()));
+}
+
 void expect_contradiction(const Screening& screening, FitResult result) {
   EXPECT_TRUE(screening.contradicts) << screening.leading << " " << screening.log10_p;
-  EXPECT_GT(screening.rms, 0.3e-6) << screening.leading;
+  EXPECT_GT(screening.rms, 0.1e-6) << screening.leading;
+  EXPECT_LT(screening.rms, residual_rms(result)) << "nothing explains more than there is";
   const std::size_t before = result.findings.size();
   result.status = FitStatus::Ok;
   judge(screening, result);

@@ -81,8 +81,10 @@ CorrectionGrid sample_grid(const TableFormat& format, const FitResult& result,
     require_points(format, result.machine.axis(axis), nodes.size());
   }
   if (grid.size() > kMostGridPoints)
-    throw InputError({}, "the grid would have " + std::to_string(grid.size()) + " points",
-                     "give a larger --step; " + std::to_string(kMostGridPoints) + " are written at most");
+    throw InputError({},
+                     "the grid would have " + std::to_string(grid.size()) + " points, " +
+                         std::to_string(kMostGridPoints) + " are written at most",
+                     "give a larger --step");
   const bool of_two_axes = is_of_two_axes(result, options);
   grid.mean = sampled(grid.nodes, of_two_axes,
                       [&](const AxisPosition& position) { return ideal.correction(position, {}); });

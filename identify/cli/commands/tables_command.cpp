@@ -278,12 +278,13 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
   if (made.all_axes) fmt::print("{}", all_axes_text(*made.all_axes));
   fmt::print("Verified: {}.\n", made.format->verified);
   if (made.tolerance > 0.0 && !made.step.reached) {
-    fmt::print(
-        "! {} {:g} um: {}\n",
-        made.step.limited ? "the limits of the controller do not allow" : "none of the steps tried reaches",
-        made.tolerance / kMicro,
-        made.step.limited ? limits_text(made.format->limits)
-                          : std::string("give --step for a finer table, or --tolerance for a coarser one"));
+    const std::string why =
+        made.step.refusal.empty()
+            ? "give --step for a finer table, or --tolerance for a coarser one"
+            : fmt::format("a finer step is refused ({}); give --tolerance for what is enough",
+                          made.step.refusal);
+    fmt::print("! the tables are up to {:.3g} um off the ideal compensation, more than {:g} um: {}\n",
+               made.step.deviation / kMicro, made.tolerance / kMicro, why);
   }
   if (!arguments.superimpose.empty())
     fmt::print("They replace {} and correct what it corrected too; before = with it.\n",

@@ -242,26 +242,26 @@ double deviation_of(const TableFormat& format, const FitResult& result, const Ta
 
 StepChoice choose_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
                        double tolerance) {
-  if (!format.limits.sampled) return {0.0, 0.0, true, false};
+  if (!format.limits.sampled) return {0.0, 0.0, true, {}};
   // What tables of rotary axes leave is no matter of the step.
   if (!format.indivisible && !options.type.linear().empty()) options.type = options.type.linear();
   const Compensation ideal = sampled_compensation(format, result, options);
   double longest = 0.0;
   for (const AxisName axis : result.machine.main_linear_axes())
     longest = std::max(longest, 0.5 * result.machine.axis(axis).travel());
-  StepChoice best{0.0, std::numeric_limits<double>::infinity(), false};
-  std::optional<InputError> refused;
+  StepChoice best{0.0, std::numeric_limits<double>::infinity(), false, {}};
+  std::optional<InputError> refused;  // by the coarsest step
   for (const double step : round_steps(longest)) {
     options.step = step;
     try {
       const std::vector<TableFile> files = write_tables(format, result, options);
       if (bytes_of(files) > kMostTableBytes) break;
       const double deviation = deviation_from(ideal, format, result, options, format.read(files));
-      if (deviation < best.deviation) best = {step, deviation, false, false};
+      if (deviation < best.deviation) best = {step, deviation, false, {}};
       best.reached = best.deviation <= tolerance + 0.5 * format.limits.resolution;
     } catch (const InputError& error) {  // too many points, or values out of range where it is too coarse
       if (!refused) refused = error;
-      best.limited = best.step > 0.0;
+      if (best.step > 0.0 && best.refusal.empty()) best.refusal = error.problem();
     }
     if (best.reached) break;
   }

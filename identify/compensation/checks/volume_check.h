@@ -64,7 +64,7 @@ struct StepChoice {
   double step = 0.0;       ///< m
   double deviation = 0.0;  ///< largest difference of a component in the volume, m
   bool reached = false;    ///< deviation within the tolerance
-  bool limited = false;    ///< the controller takes no finer one
+  std::string refusal;     ///< why a finer step was not taken; empty: none was refused
 };
 
 /// Largest difference of a component between tables, read back, and what their format samples of the ideal

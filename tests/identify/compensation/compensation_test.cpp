@@ -2,6 +2,7 @@
 
 #include "volcal/identify/compensation/compensation.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -181,10 +182,10 @@ TEST(ChosenStep, IsTheLargestRoundOneThatFollowsTheErrors) {
   EXPECT_NEAR(fine.step, 50e-3, 1e-12);
   EXPECT_TRUE(fine.reached);
   EXPECT_LE(fine.deviation, 0.3e-6);
-  EXPECT_FALSE(fine.limited);
+  EXPECT_EQ(fine.refusal, "");
   const StepChoice impossible = choose_step(format, result, options, 1e-12);
   EXPECT_FALSE(impossible.reached) << "256 rows do not hold 1 pm";
-  EXPECT_TRUE(impossible.limited);
+  EXPECT_THAT(impossible.refusal, ::testing::HasSubstr("501"));
   EXPECT_NEAR(impossible.step, 5e-3, 1e-12) << "201 rows; 2 mm would need 501";
 }
 

@@ -11,7 +11,7 @@ constexpr int kSlopeSamples = 400;
 }  // namespace
 
 Compensation::Compensation(const Machine& machine, const AxisPosition& lines, CompensationType type,
-                           DisplacementField errors, LineField along)
+                           DisplacementField errors, LineField along, const ApproachDirection& to_home)
     : type_(type),
       errors_(std::move(errors)),
       along_(std::move(along)),
@@ -20,12 +20,12 @@ Compensation::Compensation(const Machine& machine, const AxisPosition& lines, Co
   for (const AxisName name : machine.main_linear_axes()) {
     const Axis& axis = machine.axis(name);
     Line line{.axis = name, .home = axis.home};
-    line.at_home = on_line(line, axis.home, 1);
+    line.at_home = on_line(line, axis.home, to_home[index_of(name)]);
     line.slope = mean_slope(line, axis);
     axes_.push_back(line);
   }
   set_squareness(machine);
-  at_home_ = errors_(home_of(machine), kTowardsPlus);
+  at_home_ = errors_(home_of(machine), to_home);
 }
 
 Eigen::Vector3d Compensation::on_line(const Line& line, double q, int direction) const {

@@ -28,8 +28,11 @@ class Compensation {
   using LineField = std::function<Eigen::Vector3d(AxisName axis, double q, int direction)>;
   /// `lines`: the point that all specific lines go through. `along`: errors that stand for those on the
   /// lines.
+  /// `to_home`: approached so, all are zero at home; without a direction their mean is, as tables that stand
+  /// for both directions must be.
   Compensation(const Machine& machine, const AxisPosition& lines, CompensationType type,
-               DisplacementField errors, LineField along = {});
+               DisplacementField errors, LineField along = {},
+               const ApproachDirection& to_home = kTowardsPlus);
 
   CompensationType type() const { return type_; }
   /// Added to the commands of X, Y, Z; m.

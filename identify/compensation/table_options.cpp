@@ -267,21 +267,35 @@ AxisPosition lines_of(const Machine& machine, const TableFormatOptions& options)
   return options.lines.value_or(middle_of_travel(machine));
 }
 
+namespace {
+
+Compensation compensation_zero_at(const ApproachDirection& to_home, const FitResult& result,
+                                  const TableFormatOptions& options) {
+  return {result.machine,
+          lines_of(result.machine, options),
+          options.type,
+          errors_to_correct(result, options),
+          line_field(result, options),
+          to_home};
+}
+
+}  // namespace
+
 Compensation ideal_compensation(const FitResult& result, const TableFormatOptions& options) {
-  return {result.machine, lines_of(result.machine, options), options.type, errors_to_correct(result, options),
-          line_field(result, options)};
+  return compensation_zero_at(kTowardsPlus, result, options);
 }
 
 Compensation sampled_compensation(const TableFormat& format, const FitResult& result,
                                   const TableFormatOptions& options) {
   const LinearDisplacements identified = identified_displacements(result, options);
-  if (!format.rigid || !identified.has_coupled()) return ideal_compensation(result, options);
+  const ApproachDirection to_home = format.limits.both_directions ? kTowardsPlus : ApproachDirection{};
+  if (!format.rigid || !identified.has_coupled()) return compensation_zero_at(to_home, result, options);
   const DisplacementField rigid = [identified, options, compromise = compromise_of(result, options)](
                                       const AxisPosition& position, const ApproachDirection& direction) {
     return Eigen::Vector3d(identified.rigid(position, direction) + compromise.at(position, direction) -
                            active_correction(options, position, direction));
   };
-  return {result.machine, lines_of(result.machine, options), options.type, rigid};
+  return {result.machine, lines_of(result.machine, options), options.type, rigid, {}, to_home};
 }
 
 bool is_of_two_axes(const FitResult& result, const TableFormatOptions& options) {

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "tests/support/identified_machines.h"
 #include "tests/support/table_samples.h"
 #include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/identify/solve/fit.h"
@@ -115,8 +116,12 @@ TEST_P(TableFormatContract, ReadBackItIsTheIdealCompensation) {
   }
 }
 
+/// With a reversal tables of both directions are zero where home is approached towards +, others are anyway.
 TEST_P(TableFormatContract, IsZeroAtHomeApproachedTowardsPlus) {
-  const FitResult& result = identified_machine();
+  const FitResult result = testing::result_with(sim::reference_machines()[0],
+                                                {.functions = {{"EXX", [](double q) { return 20e-6 * q; }}},
+                                                 .reversals = {{"EXX", 6e-6}, {"EYX", 4e-6}}},
+                                                10);
   const CompensationTables tables = GetParam()->read(write(result));
   const Eigen::Vector3d at_home = tables.correction(home_of(result.machine), {1, 1, 1, 1, 1, 1}).linear;
   EXPECT_LT(at_home.norm(), 1e-9 + GetParam()->limits.resolution);

@@ -33,7 +33,7 @@ ModelSpec measured_in_part(const Machine& machine) {
   FunctionSpec series;
   series.basis = "fourier";
   series.degree = 2;
-  series.coefficients = {-7e-6, 5e-6, 8e-6, 2e-6, -4e-6};
+  series.coefficients = {-7e-6, 5e-6, 8e-6, 2e-6, 4e-6};
   for (const Component component : {Component::X, Component::Z, Component::A, Component::C})
     model.functions[{component, AxisName::C}] = series;
   model.measured[AxisName::C] = {0.0, 120.0 * kRadianPerDegree};

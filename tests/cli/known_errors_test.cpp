@@ -439,6 +439,20 @@ TEST_F(KnownErrors, GridsHaveABound) {
           "ten million points are the most");
 }
 
+TEST_F(KnownErrors, TablesRefuseOptionsThatSayNothing) {
+  const std::string known = "tables " + path("known.toml") + " --conditions T_air=20 ";
+  refused(known + "--dry-run --format linuxcnc --positions 5", "--positions shapes the tables of csv",
+          "--format csv");
+  refused(known + "--dry-run --format linuxcnc --grid 3", "--grid shapes the tables of csv", "--format csv");
+  refused(known + "--dry-run --format neutral-csv --zero plus", "--zero shapes the tables of csv",
+          "--format csv");
+  refused(known + "--dry-run --approach X+", "there is none", "--at X=100");
+  refused(known + "--at X=100 --approach X+,Y-,X-", "names X twice", "one direction");
+  const auto both = run_program(known + "--dry-run --positions 5 --step 10");
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_THAT(both.errors, HasSubstr("--step"));
+}
+
 TEST_F(KnownErrors, ExportTakesResults) {
   refused("export " + path("known.toml") + " --npz " + path("a.npz"), "export takes result folders",
           "result.json");

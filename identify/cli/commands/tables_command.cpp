@@ -8,13 +8,10 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
-#include "volcal/identify/cli/options/alignment_options.h"
 #include "volcal/identify/cli/options/axis_position.h"
-#include "volcal/identify/cli/options/certificate_options.h"
-#include "volcal/identify/cli/options/conditions_options.h"
-#include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/picture.h"
 #include "volcal/identify/cli/options/superimposed_tables.h"
+#include "volcal/identify/cli/options/tables_options.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/errors/error_tables.h"
@@ -37,50 +34,6 @@
 namespace volcal::cli {
 namespace {
 
-struct TablesArguments {
-  std::string result;
-  std::string output;
-  std::string format = "csv";
-  std::string type;
-  std::string zero = "mean";
-  std::string lines;
-  int positions = 0;
-  int grid = 5;
-  double step_mm = 0.0;
-  double rotary_step_deg = 0.0;
-  double tolerance_um = 0.0;
-  std::vector<std::string> at;
-  std::string tool;
-  std::vector<std::string> settings;
-  std::vector<std::string> records;
-  AlignmentArguments alignment;
-  ConditionsArguments conditions;
-  CertificateArguments certificate;
-  std::string approach;
-  std::string superimpose;
-  std::string picture;
-  bool dry_run = false;
-  bool list = false;
-  bool json = false;
-};
-
-std::string format_help() {
-  std::string text = "table format:";
-  for (const TableFormat* format : table_formats())
-    text += fmt::format(" {} = {};", format->name, format->summary);
-  text.back() = '.';
-  return text;
-}
-
-/// A format that is known; of one that is not written, the reason.
-std::string check_format_name(const std::string& name) {
-  if (find_table_format(name) != nullptr) return {};
-  for (const RefusedFormat& refused : refused_table_formats()) {
-    if (refused.name == name) return fmt::format("{} is not written: {}", name, refused.reason);
-  }
-  return fmt::format("{} is not a table format; there are {}", name, fmt::join(table_format_names(), ", "));
-}
-
 /// All of them when none is named.
 std::vector<Tool> chosen_tools(const Machine& machine, const std::string& name) {
   if (name.empty()) return machine.functional_tools();
@@ -100,21 +53,6 @@ std::vector<AxisPosition> points_of(const FitResult& result, const TablesArgumen
   std::vector<AxisPosition> points;
   for (const std::string& point : arguments.at) points.push_back(axis_position("--at", point, machine));
   return points;
-}
-
-/// X+,Y-: axes that are not named are approached from both sides.
-ApproachDirection approach_of(const Machine& machine, const std::string& text) {
-  ApproachDirection direction{};
-  for (std::size_t i = 0; i < text.size(); i += 3) {
-    const auto axis = axis_from_letter(text[i]);
-    const bool complete = i + 1 < text.size() && (text[i + 1] == '+' || text[i + 1] == '-') &&
-                          (i + 2 == text.size() || text[i + 2] == ',');
-    if (!axis || !machine.has_axis(*axis) || !complete)
-      throw InputError({}, "--approach " + text + " names no direction of the machine's axes",
-                       "write the axes and the direction they move in, as X+,Y-");
-    direction[index_of(*axis)] = text[i + 1] == '+' ? 1 : -1;
-  }
-  return direction;
 }
 
 /// `at`: the point as it was typed.
@@ -138,7 +76,7 @@ ApproachDirection approach_of(const Machine& machine, const std::string& text) {
 std::vector<VolumetricError> errors_at_points(const FitResult& result, const TablesArguments& arguments) {
   std::vector<VolumetricError> errors;
   const Conditions conditions = conditions_of(result, arguments.conditions);
-  const ApproachDirection direction = approach_of(result.machine, arguments.approach);
+  const ApproachDirection direction = approach_direction("--approach", arguments.approach, result.machine);
   for (const Tool& tool : chosen_tools(result.machine, arguments.tool)) {
     const ErrorField field(result, tool, conditions);
     const std::size_t first = errors.size();
@@ -170,14 +108,6 @@ std::vector<Finding> left_out_at_points(const FitResult& result, const std::opti
 
 bool makes_tables(const TablesArguments& arguments) { return !arguments.output.empty() || arguments.dry_run; }
 
-void require_something_to_do(const TablesArguments& arguments) {
-  if (arguments.result.empty())
-    throw InputError({}, "no result is given", "give the folder that volcal fit wrote, or --list");
-  if (arguments.at.empty() && !makes_tables(arguments))
-    throw InputError({}, "neither a folder nor a point is given",
-                     "give -o FOLDER, --dry-run, or --at X=100,Y=50");
-}
-
 void require_picture_of_tables(const TablesArguments& arguments) {
   if (!makes_tables(arguments))
     throw InputError({}, "--picture needs tables, and none are made", "give -o FOLDER or --dry-run");
@@ -198,9 +128,9 @@ TableRecord record_of(const TablesArguments& arguments, const std::optional<Cert
 TableFormatOptions table_options(const TableFormat& format, const FitResult& result,
                                  const TablesArguments& arguments) {
   TableFormatOptions options;
-  options.functions.positions = arguments.positions;
+  options.functions.positions = arguments.positions.value_or(0);
   options.functions.zero_plus = arguments.zero == "plus";
-  options.grid_per_axis = arguments.grid;
+  if (arguments.grid) options.grid_per_axis = *arguments.grid;
   options.type =
       arguments.type.empty() ? default_type(format, result) : CompensationType::parse(arguments.type);
   options.tool = arguments.tool;
@@ -358,11 +288,11 @@ void require_possible_grid(const Machine& machine, int per_axis) {
 
 int run_tables(const TablesArguments& arguments) {
   if (arguments.list) return list_formats(arguments.json);
-  require_something_to_do(arguments);
+  require_options_that_say_something(arguments);
   if (!arguments.picture.empty()) require_picture_of_tables(arguments);
   const FitResult result = aligned_result(arguments);
   if (makes_tables(arguments) && arguments.format == "csv")
-    require_possible_grid(result.machine, arguments.grid);
+    require_possible_grid(result.machine, arguments.grid.value_or(TableFormatOptions{}.grid_per_axis));
   if (arguments.conditions.no_extrapolation) {
     const Conditions conditions = conditions_of(result, arguments.conditions);
     require_conditions_of_readings(result, conditions);
@@ -403,73 +333,9 @@ int run_tables(const TablesArguments& arguments) {
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }
 
-void add_compensation_options(CLI::App& app, TablesArguments& arguments) {
-  app.add_option("-f,--format", arguments.format, format_help())
-      ->check(CLI::Validator(check_format_name, fmt::format("{{{}}}", fmt::join(table_format_names(), ","))));
-  app.add_option(
-      "--type", arguments.type,
-      "what to compensate (ISO/TR 16907, 8.2): L-POS, L-STR, L-SQU, L-ANG, or L-VOL; of rotary axes "
-      "R-POS, R-RAX, R-POR, R-ANG, or R-VOL; joined by +; default: all that the format can do");
-  app.add_option("--tool", arguments.tool,
-                 "tool that the compensation is for, default the first; with --at, default every tool");
-  auto* step =
-      app.add_option("--step", arguments.step_mm, "between the positions of a table, mm; default: chosen")
-          ->check(positive());
-  app.add_option(
-         "--rotary-step", arguments.rotary_step_deg,
-         "at most, between positions of rotary axes, deg; default 10 on grids and 5 in tables of one axis, "
-         "or what the tolerance needs below that")
-      ->check(CLI::Range(kFinestRotaryStep_deg, kCoarsestRotaryStep_deg));
-  app.add_option(
-         "--tolerance", arguments.tolerance_um,
-         "choose the largest round steps at which the tables, read back, follow the ideal compensation "
-         "this closely, um; default 0.2")
-      ->check(positive())
-      ->excludes(step);
-  app.add_option(
-      "--lines", arguments.lines,
-      "where the specific lines of L-POS, L-STR and L-SQU cross, X=500,Y=300,Z=200 in mm, axes not "
-      "named at home; default: the middle of the travel");
-  app.add_option("--set", arguments.settings, "NAME=VALUE, a setting of the format (--list)");
-  app.add_option("--superimpose", arguments.superimpose,
-                 "folder of the tables that were active while the machine was measured: the new ones replace "
-                 "them and correct both (ISO/TR 16907, 10.5)");
-  app.add_option("--record", arguments.records,
-                 fmt::format("NAME=TEXT into the metadata of the csv tables: {}",
-                             fmt::join(recordable_conditions(), ", ")));
-  app.add_option(
-      "--picture", arguments.picture,
-      "draw the tables of rotary axes as a PNG file: what they add to the commands, the error with and "
-      "without them; by a headless Chromium");
-  add_certificate_options(app, arguments.certificate);
-  app.add_flag("--dry-run", arguments.dry_run, "write nothing: say what the tables would leave");
-  app.add_flag("--list", arguments.list, "list formats, types and limits");
-}
-
 std::function<int()> define_tables(CLI::App& app) {
   auto arguments = std::make_shared<TablesArguments>();
-  app.add_option("RESULT", arguments->result,
-                 "result folder of volcal fit, model.toml with values, or folder of tables --format csv");
-  app.add_option("-o,--output", arguments->output, "folder for the tables");
-  add_compensation_options(app, *arguments);
-  add_alignment_options(app, arguments->alignment);
-  app.add_option("--positions", arguments->positions,
-                 "rows per function of the csv tables; default: round steps, 21 to 51 rows")
-      ->check(CLI::Range(kFewestTableRows, kMostTableRows));
-  app.add_option("--grid", arguments->grid, "points per axis of the volumetric grid of the csv tables")
-      ->check(CLI::Range(1, kMostGridPerAxis));
-  app.add_option("--zero", arguments->zero,
-                 "csv tables with reversal: mean of both directions is zero at home, or the + direction "
-                 "(ISO/TR 16907, Table 1)")
-      ->check(CLI::IsMember({"mean", "plus"}));
-  app.add_option(
-      "--at", arguments->at,
-      "print the volumetric error at a point, X=100,Y=50 in mm and deg, axes not named at home, and with "
-      "-o or --dry-run what the tables add to the command there; may be given several times");
-  app.add_option("--approach", arguments->approach,
-                 "X+,Y-: direction in which --at is approached; axes not named: mean of both");
-  add_conditions_options(app, arguments->conditions);
-  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  add_tables_options(app, *arguments);
   return [arguments] { return run_tables(*arguments); };
 }
 

@@ -53,4 +53,22 @@ AxisPosition axis_position(const std::string& option, const std::string& text, c
   return position;
 }
 
+ApproachDirection approach_direction(const std::string& option, const std::string& text,
+                                     const Machine& machine) {
+  ApproachDirection direction{};
+  for (std::size_t i = 0; i < text.size(); i += 3) {
+    const auto axis = axis_from_letter(text[i]);
+    const bool complete = i + 1 < text.size() && (text[i + 1] == '+' || text[i + 1] == '-') &&
+                          (i + 2 == text.size() || text[i + 2] == ',');
+    if (!axis || !machine.has_axis(*axis) || !complete)
+      throw InputError({}, option + " " + text + " names no direction of the machine's axes",
+                       "write the axes and the direction they move in, as X+,Y-");
+    if (direction[index_of(*axis)] != 0)
+      throw InputError({}, fmt::format("{} {} names {} twice", option, text, letter_of(*axis)),
+                       "give one direction for each axis");
+    direction[index_of(*axis)] = text[i + 1] == '+' ? 1 : -1;
+  }
+  return direction;
+}
+
 }  // namespace volcal::cli

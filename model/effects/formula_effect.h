@@ -29,6 +29,8 @@ class FormulaEffect final : public Effect {
     terms_.clear();
     for (const EffectTarget& target : targets) terms_.push_back({0, target});
   }
+  /// The formula has a column for each, those of one amplitude together.
+  void act_on(std::vector<EffectTerm> terms) { terms_ = std::move(terms); }
   void add_shape(EffectShape shape) { shapes_.push_back(std::move(shape)); }
   void count_unrecorded(Count count) { unrecorded_ = std::move(count); }
   void scan_by(Scan scan) { scan_ = std::move(scan); }

@@ -41,6 +41,7 @@ namespace volcal {
   EFFECT(station_event_effect)        \
   EFFECT(tool_offset_effect)          \
   EFFECT(tool_clamping_effect)        \
+  EFFECT(spindle_direction_effect)    \
   EFFECT(ball_bar_length_effect)      \
   EFFECT(servo_mismatch_effect)       \
   EFFECT(following_error_effect)      \

@@ -1,4 +1,5 @@
 // Effects of instruments, stations and tools.
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "volcal/sim/known/known_kinds.h"
@@ -50,6 +51,19 @@ void known_tool_offset(const HiddenSettings& settings, HiddenScene& scene) {
   move_tool(
       vector_of(settings),
       [tool = settings.tool()](const MachineState& state) { return state.tool == tool ? 1.0 : 0.0; }, scene);
+}
+
+/// The head out of tram: the tools as they turn with it.
+void known_spindle_direction(const HiddenSettings& settings, HiddenScene& scene) {
+  const Eigen::Matrix3d turned = (Eigen::AngleAxisd(settings.number("c", 0.0), Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(settings.number("b", 0.0), Eigen::Vector3d::UnitY()) *
+                                  Eigen::AngleAxisd(settings.number("a", 0.0), Eigen::Vector3d::UnitX()))
+                                     .toRotationMatrix();
+  scene.interference.tool.emplace_back(
+      [turned, machine = settings.machine()](const Occasion& occasion) -> Eigen::Vector3d {
+        const Eigen::Vector3d& offset = machine.tools[occasion.plan.tool].offset;
+        return turned * offset - offset;
+      });
 }
 
 void known_bar_length(const HiddenSettings& settings, HiddenScene& scene) {
@@ -120,11 +134,17 @@ void known_probe_lobing(const HiddenSettings& settings, HiddenScene& scene) {
 
 std::vector<KnownKind> known_instrument_kinds() {
   return {
-      {"ball-bar-length", known_bar_length},  {"beam-misalignment", known_beam_misalignment},
-      {"dead-path", known_dead_path},         {"encoder-eccentricity", known_encoder_eccentricity},
-      {"length-scale", known_length_scale},   {"probe-lobing", known_probe_lobing},
-      {"run-offset", known_run_offset},       {"station-drift", known_station_drift},
-      {"station-event", known_station_event}, {"tool-clamping", known_tool_clamping},
+      {"ball-bar-length", known_bar_length},
+      {"beam-misalignment", known_beam_misalignment},
+      {"dead-path", known_dead_path},
+      {"encoder-eccentricity", known_encoder_eccentricity},
+      {"length-scale", known_length_scale},
+      {"probe-lobing", known_probe_lobing},
+      {"run-offset", known_run_offset},
+      {"station-drift", known_station_drift},
+      {"spindle-direction", known_spindle_direction},
+      {"station-event", known_station_event},
+      {"tool-clamping", known_tool_clamping},
       {"tool-offset", known_tool_offset},
   };
 }

@@ -215,7 +215,7 @@ EffectSpec example_of(const std::string& kind, const Machine& machine) {
   if (kind.starts_with("station-")) spec.options.set("station", std::string("P2"));
   if (kind == "tool-clamping") spec.options.set("setup", std::string("P1_short"));
   const double amplitude = kind == "station-drift" ? 4e-9 : kind == "squareness-drift" ? 4e-6 : 12e-6;
-  for (const char* stem : {"amplitude", "cos", "sin", "x", "y", "z"}) {
+  for (const char* stem : {"amplitude", "cos", "sin", "x", "y", "z", "a", "b", "c"}) {
     if (has(stem)) spec.options.set(stem, std::string(stem) == "sin" ? -0.5 * amplitude : amplitude);
   }
   return spec;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/effect_campaign.h"
+#include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/measurement_model.h"
 

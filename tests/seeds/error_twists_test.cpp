@@ -7,12 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <array>
 #include <numbers>
 #include <vector>
 
 #include "tests/support/machines.h"
+#include "tests/support/singular_values.h"
 #include "volcal/model/kinematics/chain.h"
 
 namespace volcal {
@@ -176,7 +176,7 @@ MatrixXd jacobian(const std::vector<Column>& columns, const std::vector<Vector3d
 
 /// Rank with the gap that makes it certain: singular values beyond it are rounding.
 int rank_of(const MatrixXd& matrix) {
-  const Eigen::VectorXd values = Eigen::BDCSVD<MatrixXd>(matrix).singularValues();
+  const Eigen::VectorXd values = testing::singular_values(matrix);
   const auto rank = static_cast<int>((values.array() > 1e-10 * values[0]).count());
   EXPECT_GT(values[rank - 1], 1e-4 * values[0]);
   return rank;

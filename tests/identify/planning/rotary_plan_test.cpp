@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -14,6 +13,7 @@
 
 #include "tests/support/five_axis.h"
 #include "tests/support/refusal.h"
+#include "tests/support/singular_values.h"
 #include "volcal/identify/planning/campaign_plan.h"
 #include "volcal/identify/planning/plan_options.h"
 #include "volcal/identify/planning/registry.h"
@@ -74,7 +74,7 @@ int rank_beyond(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& nuisance)
       const double norm = matrix.col(k).norm();
       if (norm > 1e-9) matrix.col(k) /= norm;
     }
-    const Eigen::VectorXd values = matrix.jacobiSvd().singularValues();
+    const Eigen::VectorXd values = testing::singular_values(matrix);
     return static_cast<int>((values.array() > 1e-4 * values[0]).count());
   };
   Eigen::MatrixXd both(columns.rows(), columns.cols() + nuisance.cols());

@@ -5,13 +5,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "tests/support/machines.h"
+#include "tests/support/singular_values.h"
 
 namespace volcal {
 namespace {
@@ -76,7 +76,7 @@ int rank_of_constants(const Machine& machine) {
       columns.block<3, 1>(3 * pose, static_cast<Eigen::Index>(k)) = own[k];
   }
   const auto rank = [](const Eigen::MatrixXd& matrix) {
-    const Eigen::VectorXd values = matrix.jacobiSvd().singularValues();
+    const Eigen::VectorXd values = testing::singular_values(matrix);
     return static_cast<int>((values.array() > 1e-9 * values[0]).count());
   };
   Eigen::MatrixXd both(frames.rows(), frames.cols() + columns.cols());

@@ -11,7 +11,7 @@
 namespace volcal {
 
 /// Of instrument, commanded positions and readings that are not left out, in any order: 16 hexadecimal
-/// digits; empty without readings.
+/// digits, then those of every row that is left out; empty where no row is in use.
 std::string readings_fingerprint(const Setup& setup);
 
 struct FittedReadings {
@@ -19,6 +19,7 @@ struct FittedReadings {
   std::vector<std::string> setups;  ///< of the campaign that the fit was made from
   std::size_t readings = 0;         ///< of these
   std::size_t all = 0;              ///< of the campaign
+  std::size_t left_out = 0;         ///< of these setups: in use here, left out of the fit
 
   bool are_all() const { return readings > 0 && readings == all; }
 };

@@ -112,6 +112,25 @@ TEST_F(LeaveOutProgram, TakesNoPartInAFitOrAJudgement) {
   expect_same_numbers(nlohmann::json::parse(judged(validate)), figures);
 }
 
+/// Whichever of the two, fit and campaign, leaves it out.
+TEST_F(LeaveOutProgram, IsNoReadingThatTheFitWasMadeFrom) {
+  const std::string whole = content(path("campaign/campaign.toml"));
+  const std::string validate =
+      "validate " + path("result") + " " + path("campaign/campaign.toml") + " --json";
+  const auto fitted = [&] { return nlohmann::json::parse(judged(validate)).at("fitted_readings"); };
+  ASSERT_EQ(fit().exit_code, 0);
+  const std::size_t all = fitted();
+  leave_out();
+  EXPECT_EQ(fitted(), all - 1);
+  ASSERT_EQ(fit().exit_code, 0);
+  EXPECT_EQ(fitted(), all - 1);
+  std::ofstream(path("campaign/campaign.toml")) << whole;
+  EXPECT_EQ(fitted(), all - 1);
+  const auto run = run_program("validate " + path("result") + " " + path("campaign/campaign.toml"));
+  EXPECT_THAT(run.output, HasSubstr(", without 1 that it left out; "));
+  EXPECT_THAT(run.output, HasSubstr("Readings, some of which the fit was made from"));
+}
+
 TEST_F(LeaveOutProgram, IsNotTakenUpByADiagnosis) {
   leave_out();
   ASSERT_EQ(fit().exit_code, 0);

@@ -26,9 +26,10 @@ std::string seen_readings_warning(const FittedReadings& fitted) {
            "figures prove nothing; " +
            remedy;
   }
-  return fmt::format("the fit was made from {} of {} readings, those of {}; {}",
-                     count_number(static_cast<long long>(fitted.readings)),
-                     count_number(static_cast<long long>(fitted.all)), fmt::join(fitted.setups, ", "),
+  const auto counted = [](std::size_t count) { return count_number(static_cast<long long>(count)); };
+  return fmt::format("the fit was made from {} of {} readings, those of {}{}; {}", counted(fitted.readings),
+                     counted(fitted.all), fmt::join(fitted.setups, ", "),
+                     fitted.left_out > 0 ? ", without " + counted(fitted.left_out) + " that it left out" : "",
                      remedy);
 }
 

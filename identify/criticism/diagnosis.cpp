@@ -1,6 +1,7 @@
 #include "volcal/identify/criticism/diagnosis.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "volcal/identify/criticism/alternative_sets.h"
 #include "volcal/identify/criticism/catalogue/not_looked_for.h"
@@ -16,6 +17,7 @@
 #include "volcal/identify/criticism/surface_findings.h"
 #include "volcal/identify/criticism/verdict.h"
 #include "volcal/identify/numeric/threads.h"
+#include "volcal/identify/result/left_out_findings.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/observation/channels.h"
 
@@ -101,6 +103,7 @@ Diagnosis diagnosis_by(Search search, const FitResult& result, const DiagnoseOpt
   diagnosis.noise = noise_table(reached.noise_with_uncertainty());
   diagnosis.noise_instruments = reached.model().noise_groups();
   conclude(remarks(search), diagnosis);
+  std::ranges::move(left_out_findings(campaign), std::back_inserter(diagnosis.findings));
   if (options.compare) {
     progress("confounding", 0.95);
     compare_hypotheses(reached, result, options.planning, diagnosis);

@@ -5,11 +5,11 @@
 #include <iterator>
 #include <map>
 #include <numbers>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "volcal/identify/result/left_out_findings.h"
 #include "volcal/identify/solve/adjustment.h"
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/statistics/chi_squared.h"
@@ -90,22 +90,6 @@ void report_noise(const Campaign& campaign, FitResult& result) {
     if (times == over_stated.end() || times->second < kSeveralTimes) continue;
     result.findings.push_back({FindingCode::NoiseSeveralTimesStated,
                                {{"instrument", group}, {"times", FindingNumber{times->second}}}});
-  }
-}
-
-/// One per setup and reason: rows as lines of the file.
-void report_left_out(const Campaign& campaign, FitResult& result) {
-  for (const Setup& setup : campaign.setups) {
-    std::map<std::string, std::set<std::int64_t>> rows_of_reason;
-    for (const LeftOutReading& reading : setup.left_out) {
-      rows_of_reason[reading.reason].insert(setup.readings.source_line[reading.row]);
-    }
-    for (const auto& [reason, rows] : rows_of_reason) {
-      result.findings.push_back({FindingCode::ReadingsLeftOut,
-                                 {{"setup", setup.name},
-                                  {"rows", std::vector<std::int64_t>(rows.begin(), rows.end())},
-                                  {"reason", reason}}});
-    }
   }
 }
 
@@ -265,7 +249,7 @@ void judge(const MeasurementModel& model, const AdjustmentEnd& end, FitResult& r
   result.findings.insert(result.findings.end(), result.rank.invisible.begin(), result.rank.invisible.end());
   report_hidden_harmonics(campaign, result);
   report_rotary_errors_left_out(campaign, result);
-  report_left_out(campaign, result);
+  std::ranges::move(left_out_findings(campaign), std::back_inserter(result.findings));
   report_outliers(result);
   std::ranges::move(contradicted_priors(result.layout.blocks, result.parameters),
                     std::back_inserter(result.findings));

@@ -328,7 +328,7 @@ std::string preview_frame(Session& session, const std::string& effect) {
 
 std::string formula_frame(Session& session, const std::string& text,
                           const std::vector<std::string>& parameters) {
-  const WrittenEffect written = written_effect("formula", text, parameters);
+  const WrittenEffect written = written_effect(kFormulaBox, text, parameters);
   const EffectPreview preview = session.formula(written.spec);
   Json json = preview_json(session, preview);
   json["tried"] = session.tried();

@@ -147,7 +147,8 @@ std::string Workbench::try_formula(const std::string& text, const std::vector<st
 
 void Workbench::export_now(const std::string& what) {
   if (options_.read_only) throw Refusal(403, "this workbench only reads", "start it without --read-only");
-  const ExportPlace place{options_.output, options_.campaign, options_.model, options_.provenance};
+  const ExportPlace place{options_.output, options_.campaign, options_.model, options_.provenance, true,
+                          commands_};
   const auto tell = [this, what](const std::vector<std::string>& files) {
     hub_.publish("exported", json_text(Json{{"what", what}, {"files", files}}, -1));
   };

@@ -86,5 +86,36 @@ TEST_F(WorkbenchProgram, ASessionNamesTheLineThatIsWrong) {
   EXPECT_THAT(wrong.errors, HasSubstr("\"jump\" is not a command of a session"));
 }
 
+/// A model file holds no readings: what was left out is in the result alone.
+TEST_F(WorkbenchProgram, ASessionWritesItsResultWithoutWhatItLeftOut) {
+  const std::string whole = (fs::path(VOLCAL_SOURCE_DIR) / "datasets/hidden/21/campaign.toml").string();
+  const std::string leave_out = "session " + whole + " --do \"leave-out 0-11 cable moved\" ";
+  const ProgramRun model = run_program(leave_out + "-o " + file("model.toml"));
+  EXPECT_EQ(model.exit_code, 0) << model.errors;
+  EXPECT_THAT(model.output, HasSubstr("takes these readings back"));
+  EXPECT_THAT(content(file("model.toml")), HasSubstr("cable moved"));
+  const ProgramRun run =
+      run_program(leave_out + "--result " + file("result") + " --diagnosis " + file("diagnosis"));
+  EXPECT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("written: " + file("result")));
+  EXPECT_THAT(content(file("diagnosis/diagnosis.txt")), HasSubstr("cable moved"));
+  EXPECT_THAT(content(file("result/residuals.csv")), HasSubstr(",1\n"));
+  EXPECT_THAT(run_program("validate " + file("result") + " " + whole).output,
+              HasSubstr("the fit was made from 1,524 of 1,536 readings, those of P1_short, "));
+  EXPECT_THAT(
+      run_program("session " + whole + " --result " + file("same") + " --diagnosis " + file("same")).errors,
+      HasSubstr("name the same folder"));
+}
+
+TEST_F(WorkbenchProgram, ASessionSaysHowItsLinesGiveParameters) {
+  const std::string whole = (fs::path(VOLCAL_SOURCE_DIR) / "datasets/hidden/21/campaign.toml").string();
+  const std::string line = "session " + whole + " --do \"formula EXX += dir_x * sin(x / p)";
+  EXPECT_THAT(run_program(line + "\"").errors,
+              HasSubstr("end the line with p=250 (held) or with p=250+-50 (estimated)"));
+  const ProgramRun wrong = run_program(line + " with p=many\"");
+  EXPECT_THAT(wrong.errors, ::testing::Not(HasSubstr("--parameter")));
+  EXPECT_THAT(wrong.errors, HasSubstr("with p=many"));
+}
+
 }  // namespace
 }  // namespace volcal::testing

@@ -70,11 +70,25 @@ std::optional<double> finite_number(const std::string& text) {
   return whole ? std::optional(value) : std::nullopt;
 }
 
-Parameter parameter_of(const std::string& text) {
+/// "--parameter p=250", or in a line of a session "with p=250".
+std::string as_given(const std::string& option, const std::string& parameter) {
+  if (option == kFormulaBox) return "start value " + parameter;
+  return (option == kFormulaLine ? "with " : "--parameter ") + parameter;
+}
+
+std::string how_to_give(const std::string& option, const std::string& name) {
+  if (option == kFormulaBox)
+    return fmt::format("write {0}=250 (held) or {0}=250+-50 (estimated) as start values", name);
+  const char* begin = option == kFormulaLine ? "end the line " : "add ";
+  return fmt::format("{}{} (held) or {} (estimated)", begin, as_given(option, name + "=250"),
+                     as_given(option, name + "=250+-50"));
+}
+
+Parameter parameter_of(const std::string& option, const std::string& text) {
   const std::size_t equals = text.find('='), spread = text.find("+-");
   const std::string remedy =
       "write p=250 (held) or p=250+-50 (estimated, from 250 with a standard uncertainty of 50)";
-  const std::string what = "--parameter " + text + ": ";
+  const std::string what = as_given(option, text) + ": ";
   if (equals == std::string::npos) throw InputError({}, what + "it has no value", remedy);
   Parameter parameter{.name = text.substr(0, equals), .value = 0.0, .sigma = {}};
   if (parameter.name != "p" && parameter.name != "q")
@@ -95,12 +109,12 @@ void set_parameters(const std::string& option, const std::string& text, const Pi
                     const std::vector<std::string>& given, EffectSpec& spec) {
   const Expression formula = custom_expression(expression.text);
   for (const std::string& each : given) {
-    const Parameter parameter = parameter_of(each);
+    const Parameter parameter = parameter_of(option, each);
     if (spec.options.number(parameter.name))
-      throw InputError({}, "--parameter " + each + ": " + parameter.name + " is given twice",
+      throw InputError({}, as_given(option, each) + ": " + parameter.name + " is given twice",
                        "leave one out");
     if (!formula.uses(parameter.name))
-      throw InputError({}, "--parameter " + each + ": the expression does not use " + parameter.name,
+      throw InputError({}, as_given(option, each) + ": the expression does not use " + parameter.name,
                        "leave it out, or write " + parameter.name + " into the expression");
     spec.options.set(parameter.name, parameter.value);
     if (parameter.sigma) spec.options.set(parameter.name + "_sigma", *parameter.sigma);
@@ -108,8 +122,7 @@ void set_parameters(const std::string& option, const std::string& text, const Pi
   for (const std::string name : {"p", "q"}) {
     if (!formula.uses(name) || spec.options.number(name)) continue;
     refuse_effect(option, text, expression.at + formula.character_of(name),
-                  "the expression uses " + name + ", which has no value",
-                  fmt::format("add --parameter {0}=250 (held) or --parameter {0}=250+-50 (estimated)", name));
+                  "the expression uses " + name + ", which has no value", how_to_give(option, name));
   }
 }
 
@@ -195,7 +208,7 @@ std::vector<WrittenEffect> written_effects(const std::string& option, const std:
                                            const std::vector<std::string>& parameters) {
   std::vector<std::vector<std::string>> of_text(texts.size());
   for (const std::string& each : parameters) {
-    const std::string name = parameter_of(each).name;
+    const std::string name = parameter_of(option, each).name;
     bool used = false;
     for (std::size_t i = 0; i < texts.size(); ++i) {
       if (texts.size() > 1 && !uses(option, texts[i], name)) continue;

@@ -35,6 +35,11 @@ class WrittenEffectError : public InputError {
 /// InputError that names `option`.
 EffectSpec written_surface(const std::string& option, const std::string& text);
 
+/// The `option` of a line of a session, in which parameters stand behind `with`.
+inline constexpr const char* kFormulaLine = "formula";
+/// The same of the page, which has a field "Start values".
+inline constexpr const char* kFormulaBox = "formula box";
+
 /// "EZX: abs(x) / 400 * dir_x" or "EXX += dir_x * (T_column - 20)" as an effect of kind custom; `parameters`:
 /// "p=250" (held) or "p=250+-50" (estimated). Throws InputError that names `option`, WrittenEffectError where
 /// the text is wrong.

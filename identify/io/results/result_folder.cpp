@@ -6,8 +6,10 @@
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/io/results/residual_writer.h"
 #include "volcal/identify/io/results/result_json.h"
+#include "volcal/identify/result/left_out_findings.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/text_file.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal {
 namespace {
@@ -22,7 +24,9 @@ std::string json_path(const std::string& path) {
 /// A result without setups is stated and not identified (stated_errors.h).
 std::string origin_of(const FitResult& result, const Campaign& campaign) {
   if (result.setups.empty()) return "Stated in " + campaign.file;
-  return "Identified from " + campaign.file + ", status " + std::string(to_string(result.status));
+  std::string text = "Identified from " + campaign.file + ", status " + std::string(to_string(result.status));
+  for (const std::string& words : sentences(left_out_among(result.findings))) text += ";\n" + words;
+  return text;
 }
 
 }  // namespace

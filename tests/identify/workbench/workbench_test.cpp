@@ -300,6 +300,25 @@ TEST(WorkbenchDoors, LeaveOutAndCancelAndExport) {
   EXPECT_TRUE(fs::exists(page.folder.path() / "out/model-1-1.toml")) << "nothing is overwritten";
 }
 
+/// A verdict or a model without some readings is not that of the whole campaign.
+TEST(WorkbenchDoors, ExportsSayWhatWasLeftOut) {
+  Page page(false);
+  page.told("leave-out", {{"observations", {5, 6, 7}}, {"reason", "cable moved"}});
+  page.bench->wait_until_idle();
+  for (const char* what : {"model", "diagnosis", "result"}) {
+    page.told("export", {{"what", what}});
+    page.bench->wait_until_idle();
+  }
+  for (const char* file : {"model-1.toml", "diagnosis/diagnosis.txt", "diagnosis/diagnosis.json",
+                           "diagnosis/extended.toml", "result/identified.toml", "result/result.json"})
+    EXPECT_THAT(testing::content(page.folder.path() / "out" / file), ::testing::HasSubstr("cable moved"))
+        << file;
+  const Json result = Json::parse(testing::content(page.folder.path() / "out/result/result.json"));
+  EXPECT_THAT(result["provenance"]["command"].get<std::string>(),
+              ::testing::AllOf(::testing::StartsWith("volcal session "),
+                               ::testing::HasSubstr(" --do 'leave-out 5-7 cable moved' --result ")));
+}
+
 TEST(WorkbenchDoors, TriesNoFormulaWhileTheUserWaitsForWork) {
   Page page(false);
   page.told("climb");

@@ -132,7 +132,7 @@ export function FormulaBox() {
           {list && <Suggestions list={list} chosen={chosen} onTake={take} />}
           {error && of === text && <Problem error={error} text={of} />}
         </div>
-        <label class="parameters">Start values <input type="text" spellcheck={false} autocomplete="off" placeholder="p=10 mm" value={parameters} onInput={(event) => setParameters(event.currentTarget.value)} /></label>
+        <label class="parameters">Start values <input type="text" spellcheck={false} autocomplete="off" placeholder="p=250+-50" value={parameters} onInput={(event) => setParameters(event.currentTarget.value)} /></label>
       </div>
       {answer && <div class={of === text ? '' : 'is-stale'}><Result answer={answer} onAdd={addIt} /></div>}
     </section>

@@ -42,7 +42,24 @@ bool is_given_back(const EffectSpec& spec, const ModelSpec& model) {
                               [&](const MachineError& error) { return is_left_out(error, model); });
 }
 
+/// By its name, or by a label: an expression may say what an effect of the catalogue says.
+bool is_same(const Effect& known, const Effect& effect) {
+  if (known.name() == effect.name()) return true;
+  return std::ranges::any_of(effect.amplitudes(), [&](const EffectAmplitude& amplitude) {
+    return std::ranges::find(known.amplitudes(), amplitude.label, &EffectAmplitude::label) !=
+           known.amplitudes().end();
+  });
+}
+
 }  // namespace
+
+void require_not_known(const ModelSpec& model, const Effect& effect, const ExtensionWords& words) {
+  for (const EffectSpec& present : model.effects) {
+    const EffectKind* known = find_effect(present.kind);
+    if (known != nullptr && is_same(*known->make(present, model.file), effect))
+      refuse_known(model, present.source_line, words.label, words);
+  }
+}
 
 std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const EffectSpec& spec,
                                      const ExtensionWords& words) {
@@ -57,11 +74,7 @@ std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const Effect
                      "volcal diagnose --list prints all kinds");
   }
   std::unique_ptr<Effect> effect = kind->make(spec, words.place.file);
-  for (const EffectSpec& present : model.effects) {
-    const EffectKind* known = find_effect(present.kind);
-    if (known != nullptr && known->make(present, model.file)->name() == effect->name())
-      refuse_known(model, present.source_line, words.label, words);
-  }
+  require_not_known(model, *effect, words);
   if (extended.campaign != nullptr) effect->check(*extended.campaign, words.place);
   for (const EffectTerm& term : effect->terms()) {
     if (term.target.kind == TargetKind::Motion) require_axis(extended, term.target.symbol.axis, words);

@@ -29,6 +29,10 @@ struct ExtensionWords {
   std::string remedy_if_absent;  ///< where the machine lacks its axis
 };
 
+/// Throws InputError with the line of the model file that has the effect, or says the same in other words: an
+/// expression "EAY: z", where the model has the effect EAY by z of the catalogue.
+void require_not_known(const ModelSpec& model, const Effect& effect, const ExtensionWords& words);
+
 /// Adds the effect `spec` to the model, or gives back the errors that it names (left_out.h). Returns the
 /// effect; nothing where errors were given back. Throws InputError, the model unchanged, where
 ///   the model has it already,

@@ -30,8 +30,12 @@ double rms_of_heldout(const ModelState& state, const Eigen::VectorXd& residual) 
   return std::sqrt(squares / count);
 }
 
-void require_not_in_model(const std::vector<EffectFinding>& effects, const EffectName& name) {
-  const auto known = std::ranges::find(effects, name, &EffectFinding::name);
+/// By its name, or by its label: an expression may say what an effect of the catalogue says.
+void require_not_in_model(const std::vector<EffectFinding>& effects, const Effect& effect) {
+  const auto known =
+      std::ranges::find_if(effects, [name = effect.name(), label = effect_label(effect)](const auto& each) {
+        return each.name == name || each.label == label;
+      });
   if (known == effects.end()) return;
   throw InputError({}, "the model has " + known->label + " already",
                    "take it out first; a second one with a parameter that is estimated is written with "
@@ -109,7 +113,7 @@ EffectPreview Session::formula(const EffectSpec& custom) {
   const auto effect = kind->make(custom, {});
   const EffectName name = effect->name();
   effect->check(campaign(), {});
-  require_not_in_model(node().effects, name);
+  require_not_in_model(node().effects, *effect);
   require_drivers(custom, *effect);
   tests();  // so that the new one is tested after the others, whatever was asked before
   const auto last =

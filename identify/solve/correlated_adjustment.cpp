@@ -109,9 +109,10 @@ std::vector<NoiseGroupEquations> WhitenedCampaign::equations(const Eigen::Vector
 
 CorrelatedAdjustment adjust_correlated(const WhitenedCampaign& campaign, const GaussianPrior& prior,
                                        int evidence_rounds,
-                                       const std::function<void(const Eigen::VectorXd& z)>& renew,
+                                       const std::function<void(Eigen::VectorXd& z)>& renew,
                                        std::vector<SmoothingTerm>& terms, Eigen::VectorXd& z) {
   CorrelatedAdjustment result;
+  int renewals = 0;
   while (!result.converged && result.iterations < kMostIterations) {
     const std::vector<NoiseGroupEquations> equations = campaign.equations(z);
     if (result.iterations < evidence_rounds && !terms.empty()) {
@@ -126,7 +127,11 @@ CorrelatedAdjustment adjust_correlated(const WhitenedCampaign& campaign, const G
     const Eigen::VectorXd gradient = sums.gradient + total.gradient(z);
     const Eigen::VectorXd step = -(result.covariance * gradient);
     z += step;
-    if (result.iterations < kRenewals) renew(z);
+    if (renewals < kRenewals) {
+      const Eigen::VectorXd before = z;
+      renew(z);
+      if (z == before) ++renewals;
+    }
     ++result.iterations;
     result.squares = sums.squares + 2.0 * sums.gradient.dot(step) + step.dot(sums.matrix * step);
     result.redundancy = sums.observations - result.covariance.cwiseProduct(sums.matrix).sum();

@@ -65,10 +65,11 @@ struct CorrelatedAdjustment {
 };
 
 /// Minimises from z, which holds the result. Smoothing is renewed in the first `evidence_rounds` iterations;
-/// `renew` is called after the first steps with the new z, to renew what the model holds fixed.
+/// `renew` is called after the first steps with the new z, to renew what the model holds fixed, and may set z
+/// back.
 CorrelatedAdjustment adjust_correlated(const WhitenedCampaign& campaign, const GaussianPrior& prior,
                                        int evidence_rounds,
-                                       const std::function<void(const Eigen::VectorXd& z)>& renew,
+                                       const std::function<void(Eigen::VectorXd& z)>& renew,
                                        std::vector<SmoothingTerm>& terms, Eigen::VectorXd& z);
 
 }  // namespace volcal

@@ -29,6 +29,7 @@ namespace {
 
 constexpr double kFurthestStationMiss = 1.0;  // m
 constexpr int kEvidenceRounds = 2;
+constexpr int kShapeSteps = 30;
 constexpr int kOutlierRounds = 60;
 constexpr double kMostOutliers = 0.25;  // of a setup: beyond, the model or the stated noise is wrong
 constexpr double kSurelyAsWell = 0.7;   // of the largest |w| of a setup: leaves in the same round
@@ -75,8 +76,7 @@ class Identification {
     lap("rank analysis");
     adjust();
     remove_outliers();
-    require_plausible(campaign_, result_.residuals,
-                      setup_summaries(campaign_, result_.residuals, stated_sigma_), "fitted");
+    require_plausible_fit(model_, parameters_, setup_summaries(campaign_, result_.residuals, stated_sigma_));
     lap("adjustment");
     if (models_noise()) {
       progress("noise", 0.75);
@@ -172,7 +172,7 @@ class Identification {
   void check_plausible() const {
     const auto records =
         residual_records(index_, stated_sigma_, weights(stated_sigma_), parameters_, {}, 1e300, threads_);
-    require_plausible(campaign_, records, setup_summaries(campaign_, records, stated_sigma_), "nominal");
+    require_plausible(campaign_, records, setup_summaries(campaign_, records, stated_sigma_));
   }
 
   void find_rank() {
@@ -243,9 +243,12 @@ class Identification {
     scale_ = state.scale;
   }
 
-  /// Renews what the model holds fixed during a minimisation.
+  /// Renews what the model holds fixed during a minimisation. Shapes of effects that went further than their
+  /// expansion holds are set back.
   void expand() {
-    model_.expand_effects(parameters_);
+    const Eigen::VectorXd before = parameters_;
+    model_.approach_effects(parameters_);
+    if (parameters_ != before) z_ = datum_->reduced(parameters_);
     if (options_.exact_kinematics) model_.set_second_order_remainder(parameters_);
   }
 
@@ -261,20 +264,35 @@ class Identification {
     }
     expand();
     minimise_all();
+    follow_shapes([this] { minimise_all(); });
+  }
+
+  /// Until the shapes of effects that are estimated stand where the last expansion holds.
+  void follow_shapes(const std::function<void()>& minimise_again) {
+    for (int steps = 0; !model_.follow_expansion(parameters_); ++steps) {
+      expand();
+      converged_ = steps < kShapeSteps;
+      if (!converged_) return;
+      minimise_again();
+    }
   }
 
   /// After the noise has been estimated to be more than white.
   void adjust_to_noise(int evidence_rounds) {
     const WhitenedCampaign whitened(model_, *datum_, campaign_noise_, noise_, threads_);
-    const auto renew = [this](const Eigen::VectorXd& z) {
+    const auto renew = [this](Eigen::VectorXd& z) {  // z is z_, which expand() sets back
       parameters_ = datum_->raw(z);
       expand();
     };
-    correlated_ = adjust_correlated(whitened, base_prior_, evidence_rounds, renew, terms_, z_);
-    parameters_ = datum_->raw(z_);
-    result_.iterations += correlated_.iterations;
-    result_.final_cost = correlated_.cost;
-    converged_ = correlated_.converged;
+    const auto adjust = [&] {
+      correlated_ = adjust_correlated(whitened, base_prior_, evidence_rounds, renew, terms_, z_);
+      parameters_ = datum_->raw(z_);
+      result_.iterations += correlated_.iterations;
+      result_.final_cost = correlated_.cost;
+      converged_ = correlated_.converged;
+    };
+    adjust();
+    follow_shapes(adjust);
   }
 
   bool models_noise() const {
@@ -434,22 +452,8 @@ class Identification {
   }
 
   void summarise_variance_components() {
-    auto& components = result_.variance_components;
-    for (std::size_t g = 0; g < noise_groups_.size(); ++g) {
-      components.emplace_back().instrument = noise_groups_[g];
-      components.back().scale = scale_[g];
-    }
-    for (const ResidualRecord& record : result_.residuals) {
-      if (record.removed) continue;
-      VarianceComponent& own =
-          components[group_of_channel_[record.setup][static_cast<std::size_t>(record.channel)]];
-      own.redundancy += record.redundancy;
-      ++own.observations;
-    }
-    for (VarianceComponent& component : components) {
-      component.scale_u =
-          component.redundancy > 0.0 ? component.scale / std::sqrt(2.0 * component.redundancy) : 0.0;
-    }
+    result_.variance_components =
+        variance_components(noise_groups_, scale_, result_.residuals, group_of_channel_);
     for (std::size_t g = 0; g < noise_.size(); ++g) {
       auto& component = *std::ranges::find(result_.variance_components, campaign_noise_.groups[g],
                                            &VarianceComponent::instrument);
@@ -461,12 +465,7 @@ class Identification {
   void summarise_whitened_residuals() {
     result_.noise.chi2 = correlated_.squares;
     result_.noise.dof = correlated_.redundancy;
-    if (!noise_.empty()) return;
-    for (const ResidualRecord& record : result_.residuals) {
-      if (record.removed) continue;
-      result_.noise.chi2 += std::pow(record.residual() / record.sigma, 2);
-      result_.noise.dof += record.redundancy;
-    }
+    if (noise_.empty()) add_white_squares(result_.residuals, result_.noise);
   }
 
   const Campaign& campaign_;

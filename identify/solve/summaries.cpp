@@ -181,4 +181,35 @@ void summarise_temperature(const Campaign& campaign, FitResult& result) {
   result.reference_temperature_degC = count > 0 ? sum / static_cast<double>(count) : std::nan("");
 }
 
+std::vector<VarianceComponent> variance_components(
+    const std::vector<std::string>& groups, const std::vector<double>& scale,
+    const std::vector<ResidualRecord>& records,
+    const std::vector<std::vector<std::size_t>>& group_of_channel) {
+  std::vector<VarianceComponent> components;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    components.emplace_back().instrument = groups[g];
+    components.back().scale = scale[g];
+  }
+  for (const ResidualRecord& record : records) {
+    if (record.removed) continue;
+    VarianceComponent& own =
+        components[group_of_channel[record.setup][static_cast<std::size_t>(record.channel)]];
+    own.redundancy += record.redundancy;
+    ++own.observations;
+  }
+  for (VarianceComponent& component : components) {
+    component.scale_u =
+        component.redundancy > 0.0 ? component.scale / std::sqrt(2.0 * component.redundancy) : 0.0;
+  }
+  return components;
+}
+
+void add_white_squares(const std::vector<ResidualRecord>& records, NoiseSummary& noise) {
+  for (const ResidualRecord& record : records) {
+    if (record.removed) continue;
+    noise.chi2 += std::pow(record.residual() / record.sigma, 2);
+    noise.dof += record.redundancy;
+  }
+}
+
 }  // namespace volcal

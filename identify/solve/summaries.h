@@ -31,6 +31,14 @@ ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
 /// Ranges of temperatures, time and feed that the readings were recorded with.
 RecordedConditions recorded_conditions(const Campaign& campaign);
 
+/// Of the noise groups at these scales. `group_of_channel`: per setup and channel.
+std::vector<VarianceComponent> variance_components(
+    const std::vector<std::string>& groups, const std::vector<double>& scale,
+    const std::vector<ResidualRecord>& records,
+    const std::vector<std::vector<std::size_t>>& group_of_channel);
+/// Adds chi2 and redundancy of independent readings.
+void add_white_squares(const std::vector<ResidualRecord>& records, NoiseSummary& noise);
+
 /// Sets the temperature that the result's functions hold for.
 void summarise_temperature(const Campaign& campaign, FitResult& result);
 

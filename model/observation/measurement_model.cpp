@@ -113,17 +113,86 @@ void MeasurementModel::set_second_order_remainder(const Eigen::VectorXd& paramet
   }
 }
 
+namespace {
+
+bool has_free_shape(const EffectBinding& effect) { return !effect.free_shape.empty(); }
+
+/// From where an effect is expanded to `parameters`.
+Eigen::VectorXd shape_step(const EffectBinding& effect, const Eigen::VectorXd& parameters) {
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(effect.shape.size());
+  for (std::size_t i = 0; i < effect.free_shape.size(); ++i)
+    step[effect.free_shape[i]] = parameters[effect.shape_parameter(i)] - effect.shape[effect.free_shape[i]];
+  return step;
+}
+
+/// Whether the drivers a step further differ from their expansion by less than they are. Those that are not
+/// finite do not.
+bool follows_at(const std::vector<SetupView>& views, const EffectBinding& effect,
+                const Eigen::VectorXd& step) {
+  double off = 0.0, before = 0.0, expanded = 0.0;
+  for (std::size_t setup = 0; setup < views.size(); ++setup) {
+    EffectBinding::Table linear = effect.driver[setup];
+    for (std::size_t i = 0; i < effect.free_shape.size(); ++i)
+      linear += step[effect.free_shape[i]] * effect.slope[i][setup];
+    const EffectBinding::Table exact = effect.effect->drivers(views[setup], effect.shape + step);
+    off += (exact - linear).squaredNorm();
+    before += effect.driver[setup].squaredNorm();
+    expanded += linear.squaredNorm();
+  }
+  return off <= std::max(before, expanded);
+}
+
+bool follows(const std::vector<SetupView>& views, const EffectBinding& effect, const Eigen::VectorXd& step) {
+  constexpr int kPlaces = 4;  // on the way: a pole in between is not stepped over
+  if (step.isZero(0.0)) return true;
+  try {
+    for (int place = kPlaces; place > 0; --place) {
+      if (!follows_at(views, effect, step * (static_cast<double>(place) / kPlaces))) return false;
+    }
+  } catch (const InputError&) {  // an expression that is not finite there
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 void MeasurementModel::expand_effects(const Eigen::VectorXd& parameters) {
-  const auto is_free = [](const EffectBinding& effect) { return !effect.free_shape.empty(); };
-  if (std::ranges::none_of(binding_.effects, is_free)) return;
+  if (std::ranges::none_of(binding_.effects, has_free_shape)) return;
   const std::vector<SetupView> views = setup_views(campaign_, binding_, chain_);
   for (EffectBinding& effect : binding_.effects) {
-    if (!is_free(effect)) continue;
+    if (!has_free_shape(effect)) continue;
     for (std::size_t i = 0; i < effect.free_shape.size(); ++i) {
       effect.shape[effect.free_shape[i]] = parameters[effect.shape_parameter(i)];
     }
     tabulate_drivers(views, effect);
   }
+}
+
+bool MeasurementModel::follow_expansion(const Eigen::VectorXd& parameters) const {
+  if (std::ranges::none_of(binding_.effects, has_free_shape)) return true;
+  const std::vector<SetupView> views = setup_views(campaign_, binding_, chain_);
+  return std::ranges::all_of(binding_.effects, [&](const EffectBinding& effect) {
+    return !has_free_shape(effect) || follows(views, effect, shape_step(effect, parameters));
+  });
+}
+
+void MeasurementModel::approach_effects(Eigen::VectorXd& parameters) {
+  constexpr int kHalvings = 20;
+  if (std::ranges::none_of(binding_.effects, has_free_shape)) return;
+  const std::vector<SetupView> views = setup_views(campaign_, binding_, chain_);
+  for (const EffectBinding& effect : binding_.effects) {
+    if (!has_free_shape(effect)) continue;
+    Eigen::VectorXd step = shape_step(effect, parameters);
+    int halvings = 0;
+    while (!follows(views, effect, step)) step *= ++halvings < kHalvings ? 0.5 : 0.0;
+    if (halvings == 0) continue;
+    for (std::size_t i = 0; i < effect.free_shape.size(); ++i) {
+      const int index = effect.free_shape[i];
+      parameters[effect.shape_parameter(i)] = effect.shape[index] + step[index];
+    }
+  }
+  expand_effects(parameters);
 }
 
 void MeasurementModel::local_nuisance(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,

@@ -71,6 +71,12 @@ class MeasurementModel {
   /// Expands the effects' drivers about the shape parameters in `parameters`; at first they are expanded
   /// about the model file's values.
   void expand_effects(const Eigen::VectorXd& parameters);
+  /// Whether the drivers at the shape parameters in `parameters`, and on the way to them, are about what
+  /// their expansion makes of them: not where a time constant went through zero.
+  bool follow_expansion(const Eigen::VectorXd& parameters) const;
+  /// Expands the effects' drivers as far on the way to `parameters` as they follow their expansion, and puts
+  /// the shape parameters there.
+  void approach_effects(Eigen::VectorXd& parameters);
 
   /// Stated standard deviation of a channel, SI: constant, per metre and repeatability, or the sigma column.
   /// The part per metre counts the length from where a station is guessed to stand, or, with `estimated`,

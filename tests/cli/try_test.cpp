@@ -139,5 +139,50 @@ TEST(TryProgram, RefusesWhatTheModelHasAlready) {
   EXPECT_THAT(no_axis.errors, HasSubstr("an axis that the model's machine does not have"));
 }
 
+/// An expression that says what an effect of the catalogue says, by every command that takes one.
+TEST(TryProgram, RefusesAnEffectOfTheModelInOtherWords) {
+  const testing::ScratchFolder scratch;
+  const std::string model = (scratch.path() / "model-1.toml").string();
+  ASSERT_EQ(run_program("extend " VOLCAL_SOURCE_DIR
+                        "/datasets/hidden/21/model.toml --effect axis-coupling:ECX:z:linear -o " +
+                        model)
+                .exit_code,
+            0);
+  const std::string campaign = " " VOLCAL_SOURCE_DIR "/datasets/hidden/21/campaign.toml --model " + model;
+  for (const std::string& command :
+       {"try" + campaign + " 'ECX: z'", "extend " + model + " --custom 'ECX: z'",
+        "diagnose" + campaign + " --try 'ECX: z'", "session" + campaign + " --do 'formula ECX += z'"}) {
+    const auto run = run_program(command);
+    EXPECT_EQ(run.exit_code, 2) << command;
+    EXPECT_THAT(run.errors, ::testing::ContainsRegex("the model has .* already")) << command;
+    EXPECT_THAT(run.errors, ::testing::Not(HasSubstr("given twice"))) << command;
+  }
+}
+
+/// Where the readings hold a plain reversal, the time constant wants to be 0: a step of the adjustment that
+/// takes it through 0 is not taken.
+TEST(TryProgram, ATimeConstantDoesNotGoThroughZero) {
+  const testing::ScratchFolder scratch;
+  const std::string model = (scratch.path() / "model-1.toml").string(),
+                    result = (scratch.path() / "result").string();
+  ASSERT_EQ(run_program("extend " VOLCAL_SOURCE_DIR
+                        "/datasets/hidden/21/model.toml --custom 'EXX: dir_x*(1-exp(-t/p))' "
+                        "--parameter p=1800+-600 -o " +
+                        model)
+                .exit_code,
+            0);
+  const auto run = run_program("fit " VOLCAL_SOURCE_DIR
+                               "/datasets/hidden/21/campaign.toml --noise white "
+                               "--json --model " +
+                               model + " -o " + result);
+  ASSERT_LE(run.exit_code, 1) << run.errors;
+  const std::string identified = testing::content(result + "/identified.toml");
+  const std::size_t at = identified.find("\np = ");
+  ASSERT_NE(at, std::string::npos);
+  const double p = std::stod(identified.substr(at + 5));
+  EXPECT_GT(p, 0.0);
+  EXPECT_LT(p, 200.0);
+}
+
 }  // namespace
 }  // namespace volcal

@@ -23,7 +23,10 @@ void define_findings(py::module_& module) {
           "severity", [](const Finding& finding) { return std::string(to_string(finding.severity())); },
           "\"note\", \"warning\" or \"failure\".")
       .def_property_readonly(
-          "data", [](const Finding& finding) { return from_json(finding_json(finding).dump())["data"]; },
+          "data",
+          [](const Finding& finding) -> py::object {
+            return from_json(finding_json(finding).dump())["data"];
+          },
           "Its values by name; numbers are {\"si\": value, \"unit\": text, \"si_per_unit\": factor}.")
       .def_property_readonly(
           "sentence", [](const Finding& finding) { return text_of(sentence(finding)); },

@@ -32,22 +32,6 @@ std::optional<AxisName> linear_axis_of(const std::string& option, const std::str
   return axis;
 }
 
-/// {"x_mm": 500.0}: axes that are not named stand at home.
-AxisPosition origin_of(const Machine& machine, const py::dict& given) {
-  AxisPosition origin{};
-  for (const Axis& axis : machine.axes) origin[index_of(axis.name)] = axis.home;
-  for (const auto& [name, value] : given) {
-    const std::string key = py::str(name).cast<std::string>();
-    const auto axis = std::ranges::find_if(
-        machine.axes, [&](const Axis& each) { return position_column(each.name) == key; });
-    if (axis == machine.axes.end())
-      throw InputError({}, "origin: " + key + " is not a position of an axis of the machine",
-                       "give x_mm, y_mm, z_mm ...");
-    origin[index_of(axis->name)] = number_of(value, "origin " + key) * position_unit(axis->name).si_per_unit;
-  }
-  return origin;
-}
-
 Alignment wished_alignment(const Machine& machine, const std::string& primary, const std::string& secondary,
                            const py::dict& origin, const std::string& reference,
                            const std::optional<std::array<double, 2>>& spindle_tilt_urad) {
@@ -60,7 +44,7 @@ Alignment wished_alignment(const Machine& machine, const std::string& primary, c
   Alignment alignment;
   alignment.datum = wished_datum(machine.datum, linear_axis_of("primary", primary),
                                  linear_axis_of("secondary", secondary), spindle);
-  if (!origin.empty()) alignment.origin = origin_of(machine, origin);
+  if (!origin.empty()) alignment.origin = position_of(machine, origin, "origin");
   if (spindle) {
     const std::array<double, 2> tilt = spindle_tilt_urad.value_or(std::array<double, 2>{});
     for (const double angle : tilt) require_finite("spindle_tilt_urad", angle);
@@ -81,7 +65,7 @@ AlignedOf aligned_result(const Result& of, const std::string& primary, const std
     AlignedResult aligned = align_result(of.result, alignment);
     aligned.result.residuals = of.result.residuals;
     return AlignedOf{
-        {std::move(aligned.result), of.campaign}, aligned.frame_rotation, aligned.frame_covariance};
+        {std::move(aligned.result), of.campaign, of.path}, aligned.frame_rotation, aligned.frame_covariance};
   });
 }
 

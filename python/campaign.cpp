@@ -147,6 +147,13 @@ void define_setup(py::module_& module) {
       .def("__getitem__", &column_of, py::arg("column"),
            "A column by its name: float array of shape (n,), in the unit of the name, a copy. Raises "
            "KeyError.")
+      .def(
+          "__contains__",
+          [](const SetupOf& setup, const py::object& column) { return column_names(setup).contains(column); },
+          py::arg("column"), "Whether it has a column of this name.")
+      .def(
+          "__iter__", [](const SetupOf& setup) { return py::iter(column_names(setup)); },
+          "Names of the columns.")
       .def("to_dict", &columns_dict,
            "All columns by name: float arrays of shape (n,), in the units of the names, copies.")
       .def(

@@ -1,7 +1,9 @@
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -18,6 +20,8 @@
 
 namespace volcal::python {
 namespace {
+
+constexpr double kLargestValue = 1e12;  // of a driver: squares of larger ones leave no digits to others
 
 /// A parameter of the shape, in its edge unit.
 struct OwnParameter {
@@ -73,6 +77,7 @@ class ReadingsView {
 }
 
 Eigen::VectorXd checked_values(const OwnEffect& effect, const SetupView& view, const py::object& returned) {
+  if (is_complex(returned)) refuse_driver(effect, view, "returned complex numbers", "return real numbers");
   const Doubles array = Doubles::ensure(returned);
   const auto rows = static_cast<py::ssize_t>(view.rows());
   if (!array || array.ndim() != 1 || array.size() != rows) {
@@ -87,19 +92,37 @@ Eigen::VectorXd checked_values(const OwnEffect& effect, const SetupView& view, c
     refuse_driver(effect, view, "returned a value that is not finite",
                   "write it so that it has a value at every reading, as in numpy.sqrt(numpy.maximum(0, z))");
   }
+  if (rows > 0 && values.cwiseAbs().maxCoeff() > kLargestValue) {
+    refuse_driver(effect, view, fmt::format("returned a value beyond {:g}", kLargestValue),
+                  "scale it, so that its values are about 1: the amplitude has the size");
+  }
   return values;
 }
 
+/// Readings, which are gone when the driver has ended, whether it returned or raised.
+class OpenReadings {
+ public:
+  OpenReadings(const SetupView& view, const OwnEffect& effect)
+      : readings_(std::make_shared<ReadingsView>(view, effect)) {}
+  ~OpenReadings() { readings_->close(); }
+  OpenReadings(const OpenReadings&) = delete;
+  OpenReadings& operator=(const OpenReadings&) = delete;
+  const std::shared_ptr<ReadingsView>& get() const { return readings_; }
+
+ private:
+  std::shared_ptr<ReadingsView> readings_;
+};
+
 Eigen::VectorXd called_driver(const OwnEffect& effect, const SetupView& view, const Eigen::VectorXd& shape) {
   const py::gil_scoped_acquire lock;
-  auto readings = std::make_shared<ReadingsView>(view, effect);
+  const OpenReadings readings(view, effect);
   py::dict parameters;
   for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
     const OwnParameter& each = effect.parameters[k];
     parameters[py::str(each.key)] = shape[static_cast<Eigen::Index>(k)] / each.si_per_unit();
   }
-  const py::object returned = py::reinterpret_borrow<py::function>(effect.driver)(readings, **parameters);
-  readings->close();
+  const py::object returned =
+      py::reinterpret_borrow<py::function>(effect.driver)(readings.get(), **parameters);
   return checked_values(effect, view, returned);
 }
 
@@ -236,9 +259,18 @@ std::vector<Variable> checked_variables(const std::string& what, const std::vect
   return variables;
 }
 
+/// Effects are addressed KIND:TARGET:DRIVER:SHAPE.
+void require_kind(const std::string& kind) {
+  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; };
+  if (kind.empty() || !std::ranges::all_of(kind, fits))
+    throw InputError({}, "\"" + kind + "\" cannot be the name of a kind of effects",
+                     "name it with letters, digits, - and _ alone");
+}
+
 void register_own_effect(const std::string& kind, const py::object& target, const py::function& driver,
                          const std::vector<std::string>& variables, const std::string& summary,
                          const std::map<std::string, std::vector<double>>& parameters) {
+  require_kind(kind);
   auto own = std::make_unique<OwnEffect>();
   own->targets = py::isinstance<py::str>(target) ? std::vector{target.cast<std::string>()}
                                                  : target.cast<std::vector<std::string>>();
@@ -295,6 +327,15 @@ void define_readings(py::module_& module) {
            "(mm/min), tool_length tool_x tool_y tool_z (mm). Raises KeyError for one that the effect does "
            "not name.")
       .def("__len__", [](const ReadingsView& readings) { return readings.view().rows(); })
+      .def(
+          "__contains__",
+          [](const ReadingsView& readings, const py::object& variable) {
+            return py::list(py::cast(readings.variables())).contains(variable);
+          },
+          py::arg("variable"), "Whether the effect uses a variable.")
+      .def(
+          "__iter__", [](const ReadingsView& readings) { return py::iter(py::cast(readings.variables())); },
+          "Names of the variables.")
       .def_property_readonly("variables", &ReadingsView::variables,
                              "Names of the variables that the effect uses.")
       .def_property_readonly(
@@ -324,7 +365,7 @@ void define_effects(py::module_& module) {
              py::arg("parameters") = std::map<std::string, std::vector<double>>(),
              "Adds an effect of your own, which models, fits and diagnoses then know like those of the "
              "library: amplitude "
-             "times driver, added to a target.\n\n"
+             "times driver, added to a target. kind: its name, of letters, digits, - and _.\n\n"
              "target: an error motion (\"EAY\"), \"tool x\", \"tool NAME x\", \"station NAME x\" or a column "
              "of readings "
              "(\"length_mm of SETUP\"); or a list of them, of which a diagnosis tests each that the campaign "
@@ -332,7 +373,8 @@ void define_effects(py::module_& module) {
              "are in um, of rotations in urad.\n"
              "driver: called with the Readings of a setup, and the parameters by name; returns a float array "
              "of shape (n,), one "
-             "value per reading, the same for the same readings. It is called from threads of the library, "
+             "value per reading, real and at most 1e12, the same for the same readings. It is called from "
+             "threads of the library, "
              "one call at a "
              "time.\n"
              "variables: what the driver uses of the readings (Readings.__getitem__). In setups that did not "
@@ -341,9 +383,8 @@ void define_effects(py::module_& module) {
              "parameters: of the driver's shape, {\"depth_mm\": (start, least, most)} in the unit that the "
              "name ends with; a "
              "diagnosis looks for the best value in that range.\n"
-             "Registered again, a kind is replaced. Raises InputError for a kind of the library, a target or "
-             "a variable that "
-             "is none.");
+             "Registered again, a kind is replaced. Raises InputError for a kind of the library, and for a "
+             "kind, a target or a variable that cannot be one.");
   module.def("unregister_effect", &unregister_own_effect, py::arg("kind"),
              "Takes an effect of your own back: diagnoses no longer look for it, and models with it are "
              "refused. Raises "

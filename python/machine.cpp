@@ -33,9 +33,10 @@ py::list tool_names(const Machine& machine) {
 }  // namespace
 
 void define_machine(py::module_& module) {
-  py::class_<Machine, std::shared_ptr<Machine>>(
-      module, "Machine",
-      "A machine tool as its owner describes it: structure, axes, datum, tools (machine.toml).")
+  py::class_<Machine, std::shared_ptr<Machine>>(module, "Machine",
+                                                "A machine tool as its owner describes it: structure, axes, "
+                                                "datum, tools (machine.toml). It can be pickled, as "
+                                                "the text of to_toml().")
       .def_static(
           "read", [](const std::filesystem::path& path) { return read_machine(path.string()); },
           py::arg("path"), "Machine of a machine.toml. Raises InputError.")
@@ -53,6 +54,11 @@ void define_machine(py::module_& module) {
           "deg.")
       .def_property_readonly("tools", &tool_names, "Names of the tools.")
       .def("to_toml", &machine_toml, "The machine as the text of a machine.toml.")
+      .def(py::pickle(
+          [](const Machine& machine) { return py::make_tuple(machine_toml(machine), machine.file); },
+          [](const py::tuple& state) {
+            return parse_machine(state[0].cast<std::string>(), state[1].cast<std::string>());
+          }))
       .def("__repr__", [](const Machine& machine) {
         return text_of("<volcal.Machine " + machine.name + ", " + machine.structure.code + ">");
       });

@@ -11,6 +11,7 @@
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/long_work.h"
 
@@ -19,6 +20,7 @@ namespace {
 
 Model extended_by(const Model& model, const py::handle& effect, const Campaign* campaign) {
   Model extended = model;
+  if (campaign != nullptr) spec_for(&model, campaign->machine);
   const EffectSpec spec = effect_spec_of(effect, model.machine, campaign);
   const std::string label = effect_text(effect);
   without_lock([&] {
@@ -55,6 +57,12 @@ void write_model(const Model& model, const std::filesystem::path& path) {
 
 }  // namespace
 
+ModelSpec spec_for(const Model* model, const Machine& machine) {
+  if (model == nullptr) return {};
+  require_machine_of_model(model->machine, machine, {model->spec.file, 0});
+  return model->spec;
+}
+
 EffectSpec effect_spec_of(const py::handle& effect, const Machine& machine, const Campaign* campaign) {
   if (py::isinstance<EffectFinding>(effect)) return effect.cast<const EffectFinding&>().spec;
   if (py::isinstance<py::str>(effect)) {
@@ -63,6 +71,9 @@ EffectSpec effect_spec_of(const py::handle& effect, const Machine& machine, cons
     return named_effect("effect", effect.cast<std::string>(),
                         campaign != nullptr ? *campaign : of_machine_alone);
   }
+  require_mapping(
+      effect, "an effect",
+      "give \"KIND:TARGET\", a mapping with the keys of an [[effects]] table, or an EffectFinding");
   const std::string text =
       "format = \"" + std::string(kModelFormat) + "\"\n[[effects]]\n" + toml_lines(effect);
   return parse_model(text, "effect", machine).effects.front();
@@ -77,7 +88,9 @@ void define_model(py::module_& module) {
   py::class_<Model>(
       module, "Model",
       "What is assumed of a machine: bases of the error functions, effects beyond the rigid body, known "
-      "values (model.toml). Model(machine): all 21 errors, cubic B-splines, automatic knots.")
+      "values (model.toml). Model(machine): all 21 errors, cubic B-splines, automatic knots. It can be "
+      "pickled, as "
+      "the text of to_toml().")
       .def(py::init([](const Machine& machine) {
              return Model{{}, machine};
            }),
@@ -110,7 +123,18 @@ void define_model(py::module_& module) {
           "or an "
           "EffectFinding of a diagnosis.\n"
           "campaign: where it has to act; effects of temperatures, stations, setups and tools need it.\n"
-          "Raises InputError where the model has it already or nothing recorded drives it.")
+          "Raises InputError where the model has it already, nothing recorded drives it, or the campaign is "
+          "of "
+          "another machine.")
+      .def(py::pickle(
+          [](const Model& model) {
+            return py::make_tuple(written_model(model), model.spec.file, model.machine);
+          },
+          [](const py::tuple& state) {
+            const auto& machine = state[2].cast<const Machine&>();
+            return Model{parse_model(state[0].cast<std::string>(), state[1].cast<std::string>(), machine),
+                         machine};
+          }))
       .def("to_toml", &written_model, "The model as the text of a model.toml.")
       .def("write", &write_model, py::arg("path"),
            "Writes a model.toml, and machine.toml beside it where the machine is of no file. Raises "

@@ -15,6 +15,10 @@ struct Model {
   Machine machine;
 };
 
+/// What is assumed of `machine`: all errors where no model is given. Throws InputError for a model of another
+/// machine.
+ModelSpec spec_for(const Model* model, const Machine& machine);
+
 /// An effect as a user gives it: "KIND:TARGET[:DRIVER[:SHAPE]]" of what could act in the campaign, a mapping
 /// with the keys of an [[effects]] table, or an effect of a diagnosis. Throws InputError.
 EffectSpec effect_spec_of(const py::handle& effect, const Machine& machine, const Campaign* campaign);

@@ -1,6 +1,7 @@
 #include "volcal/identify/montecarlo/montecarlo.h"
 
 #include <fmt/format.h>
+#include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
@@ -8,10 +9,14 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/io/results/montecarlo_writer.h"
+#include "volcal/identify/montecarlo/disturbance.h"
 #include "volcal/identify/report/report.h"
+#include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/montecarlo_text.h"
 #include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/text/atomic_folder.h"
@@ -63,26 +68,48 @@ void require_fit_of(const Campaign& campaign, const Result& of) {
     throw InputError({}, "the result is aligned, and draws are of a fit", remedy + ", not aligned");
   if (result.residuals.empty() || result.adjustment == nullptr)
     throw InputError({}, "the result was read from files, without residuals", remedy);
-  if (of.campaign.get() != &campaign && !is_fit_of(campaign, result))
+  if (of.campaign.get() == &campaign) return;
+  if (!is_fit_of(campaign, result))
     throw InputError({campaign.file, 0}, "the result is of another campaign", remedy);
+  readings_for(campaign, result, {campaign.file, 0});
 }
 
-Study draw_campaign(const Campaign& campaign, const Result& result, std::uint64_t draws, int digits,
-                    std::uint64_t most_draws, std::uint64_t seed, const std::string& path,
-                    const std::string& functions, int refits, int grid, int threads, double minutes,
-                    const py::object& progress) {
+/// Ranges as of the command line.
+void require_sample(std::uint64_t draws, const std::optional<int>& digits, std::uint64_t most_draws,
+                    int refits, int grid) {
+  constexpr int kMostDigits = 2, kMostRefits = 1000, kMostPoints = 11;
+  if (digits) require_range("digits", *digits, 1, kMostDigits);
+  if (digits && draws > 0)
+    throw InputError({}, "digits and draws are given, and each says when to end", "leave one of the two out");
+  require_positive("most_draws", static_cast<double>(most_draws));
+  require_range("refits", refits, 0, kMostRefits);
+  require_range("grid", grid, 0, kMostPoints);
+}
+
+Study draw_campaign(const Campaign& campaign, const Result& result, std::uint64_t draws,
+                    const std::optional<int>& digits, std::uint64_t most_draws, std::uint64_t seed,
+                    const std::string& path, const std::string& functions, int refits, int grid, int threads,
+                    double minutes, const std::vector<std::string>& disturb, const py::dict& conditions,
+                    bool within_readings, const py::object& progress) {
   require_fit_of(campaign, result);
   require_not_negative("minutes", minutes);
+  require_sample(draws, digits, most_draws, refits, grid);
+  require_threads(threads);
   MonteCarloOptions options;
   options.path = draw_path(path);
   options.draws = draws;
-  options.digits = digits;
+  options.digits = digits.value_or(options.digits);
   options.most_draws = most_draws;
   options.seed = seed;
   options.threads = threads;
   options.refits = refits;
   options.grid_per_axis = grid;
   options.sources.functions = function_roughness(functions);
+  for (const std::string& text : disturb)
+    options.sources.disturbances.push_back(disturbance_from(text, campaign));
+  const Conditions stated = stated_conditions(result.result, named_texts(conditions));
+  if (!conditions.empty()) options.conditions = stated;
+  if (within_readings) require_within_readings(result.result, stated);
   const auto tell = progress_to(progress);
   return without_lock([&] {
     tell("refits", 0.0);
@@ -175,17 +202,27 @@ void define_montecarlo(py::module_& module) {
       });
   module.def(
       "montecarlo", &draw_campaign, py::arg("campaign").none(false), py::arg("result"), py::kw_only(),
-      py::arg("draws") = std::uint64_t{0}, py::arg("digits") = 2,
+      py::arg("draws") = std::uint64_t{0}, py::arg("digits") = py::none(),
       py::arg("most_draws") = std::uint64_t{10000000}, py::arg("seed") = std::uint64_t{1},
       py::arg("path") = "auto", py::arg("functions") = "drawn", py::arg("refits") = 20, py::arg("grid") = 3,
-      py::arg("threads") = 0, py::arg("minutes") = 10.0, py::arg("progress") = py::none(),
+      py::arg("threads") = 0, py::arg("minutes") = 10.0, py::arg("disturb") = std::vector<std::string>(),
+      py::arg("conditions") = py::dict(), py::arg("within_readings") = false,
+      py::arg("progress") = py::none(),
       "Distributions of every error by drawing the campaign again, as `volcal montecarlo`; the same seed "
       "gives "
       "the same bits for any number of threads. `result` must come from fit() of this campaign.\n\n"
-      "draws: 0 = until `digits` of every uncertainty are right, at most `most_draws` and `minutes` (0 = no "
+      "draws: 0 = until `digits` (1 or 2; None = 2) of every uncertainty are right, at most `most_draws` and "
+      "`minutes` (0 = no "
       "limit). path: \"auto\", \"linear\", \"chord\", \"refit\". functions: \"drawn\" or \"fixed\". refits: "
       "sample on which the paths are compared. grid: points per axis whose errors are listed, 0 = nothing of "
       "the volume.\n"
+      "disturb: effects that act on the readings and that the fit knows nothing of, \"KIND:TARGET=U\" of "
+      "standard "
+      "uncertainty U or \"KIND:TARGET=+-A\" within limits A, in the unit of the effect. conditions: "
+      "{\"T_air\": "
+      "24.0} that errors are stated for. within_readings: refuse where an axis was measured over a part of "
+      "its "
+      "travel, and conditions beyond the measured ones.\n"
       "progress: called with the stage and the share of the work that is done, 0 to 1; what it raises ends "
       "the "
       "work, as does Ctrl-C between two blocks of draws. Raises InputError.");

@@ -19,11 +19,20 @@
 #include "volcal/model/description/units.h"
 #include "volcal/python/model.h"
 #include "volcal/python/result.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/long_work.h"
 
 namespace volcal::python {
 namespace {
+
+constexpr int kMostStations = 12, kFewestPlanned = 16, kMostPlanned = 20000;  // as of the command line
+
+void require_budget(const std::optional<int>& readings, const std::optional<double>& time_h, int stations) {
+  require_range("stations", stations, 1, kMostStations);
+  if (readings) require_range("readings", *readings, kFewestPlanned, kMostPlanned);
+  if (time_h) require_positive("time_h", *time_h);
+}
 
 std::vector<std::size_t> tools_named(const Machine& machine, const std::vector<std::string>& names) {
   std::vector<std::size_t> tools;
@@ -55,9 +64,13 @@ CampaignPlan plan_of(const Machine& machine, const Model* model, std::optional<i
                      const std::vector<py::object>& separate, const std::shared_ptr<Campaign>& given,
                      bool extend, std::optional<double> bar_mm, std::optional<double> bar_sigma_um,
                      std::uint64_t seed, int threads, const py::object& progress) {
+  require_threads(threads);
+  require_budget(readings, time_h, stations);
+  if (bar_mm) require_positive("bar_mm", *bar_mm);
+  if (bar_sigma_um) require_positive("bar_sigma_um", *bar_sigma_um);
   PlanSettings settings;
   settings.machine = machine;
-  if (model != nullptr) settings.model = model->spec;
+  settings.model = spec_for(model, machine);
   settings.instrument = instrument.empty() ? usual_plan_instrument() : instrument;
   if (find_plan_instrument(settings.instrument) == nullptr)
     throw InputError({}, "no plan is made for instrument " + instrument, "leave it out for a laser tracer");

@@ -16,6 +16,7 @@
 #include "volcal/identify/io/results/result_folder.h"
 #include "volcal/identify/io/results/result_json.h"
 #include "volcal/identify/report/report.h"
+#include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/fit_summary.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/today.h"
@@ -26,6 +27,7 @@
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/findings.h"
 #include "volcal/python/shared/long_work.h"
+#include "volcal/python/shared/option_words.h"
 
 namespace volcal::python {
 namespace {
@@ -180,7 +182,7 @@ ApproachDirection approach_of(const Machine& machine, const py::dict& given) {
 }
 
 py::dict errors_at(const Result& of, const std::string& tool_name, const py::dict& approach,
-                   const py::dict& conditions, const py::kwargs& given) {
+                   const py::dict& conditions, bool within_readings, const py::kwargs& given) {
   const FitResult& result = of.result;
   const auto positions = positions_of(result.machine, given);
   const auto direction = approach_of(result.machine, approach);
@@ -193,10 +195,15 @@ py::dict errors_at(const Result& of, const std::string& tool_name, const py::dic
   bool* to_extrapolated = extrapolated.mutable_data();
   without_lock([&] {
     const Tool& tool = tool_named(result.machine, tool_name);
-    const ErrorField field(result, tool, stated_conditions(result, texts));
+    const Conditions stated = stated_conditions(result, texts);
+    if (within_readings) require_conditions_of_readings(result, stated);
+    const ErrorField field(result, tool, stated);
     for (const AxisPosition& position : positions) {
       require_identified_rotary_axes(result, position);
       const VolumetricError error = volumetric_error(result, field, position, tool, direction);
+      if (within_readings)
+        require_measured(fmt::format("point {}", &position - positions.data() + 1), result.machine,
+                         field.measured(), position, error);
       to_value = std::copy(error.value.begin(), error.value.end(), to_value);
       to_u = std::copy(error.u.begin(), error.u.end(), to_u);
       *to_extrapolated++ = error.extrapolated;
@@ -320,7 +327,7 @@ void define_outputs(py::class_<Result>& type) {
            "is zero at "
            "home, or the \"plus\" direction. Raises InputError.")
       .def("errors_at", &errors_at, py::kw_only(), py::arg("tool") = "", py::arg("approach") = py::dict(),
-           py::arg("conditions") = py::dict(),
+           py::arg("conditions") = py::dict(), py::arg("within_readings") = false,
            "Volumetric errors at n commanded positions, given by axis: errors_at(x_mm=[0, 100], y_mm=[50, "
            "50]), arrays "
            "of shape (n,), mm and deg, axes not named at home. Returns \"value\" and \"u\" (standard "
@@ -329,8 +336,9 @@ void define_outputs(py::class_<Result>& type) {
            "shape (n,).\n\n"
            "tool: by name, \"\" = the machine's first. approach: direction of approach by axis, {\"X\": 1}; "
            "others: mean "
-           "of both. conditions: {\"T_air\": 23.3, \"time_s\": 3600, \"feed_mm_min\": 1000}. Raises "
-           "InputError.")
+           "of both. conditions: {\"T_air\": 23.3, \"time_s\": 3600, \"feed_mm_min\": 1000}. "
+           "within_readings: refuse "
+           "points and conditions beyond the measured ones. Raises InputError.")
       .def(
           "to_json", [](const Result& result) { return text_of(result_json(result.result)); },
           "result.json as `write` writes it.")
@@ -354,10 +362,7 @@ void define_outputs(py::class_<Result>& type) {
           "report_html", [](const Result& result) { return without_lock([&] { return report_of(result); }); },
           "The whole report as one HTML page. Raises RuntimeError where volcal was built without it.")
       .def("__str__",
-           [](const Result& result) {
-             return text_of(result.campaign != nullptr ? fit_summary_text(result.result, *result.campaign)
-                                                       : result_summary_json(result.result));
-           })
+           [](const Result& result) { return text_of(with_arguments(fit_summary_text(result.result))); })
       .def("__repr__",
            [](const Result& result) {
              return text_of("<volcal.Result of " + result.result.machine.name + ", " +
@@ -391,7 +396,7 @@ void define_result(py::module_& module) {
   module.def(
       "read_result",
       [](const std::filesystem::path& path) {
-        return without_lock([&] { return Result{read_result(path.string()), nullptr}; });
+        return without_lock([&] { return Result{read_result(path.string()), nullptr, path.string()}; });
       },
       py::arg("path"),
       "Result of a folder that `volcal fit` or Result.write wrote, or of its result.json; without residuals, "

@@ -14,6 +14,7 @@ namespace volcal::python {
 struct Result {
   FitResult result;
   std::shared_ptr<const Campaign> campaign;  ///< null where it was read from files
+  std::string path = {};                     ///< of these files
 };
 
 /// A text as HTML shows it.

@@ -11,6 +11,7 @@
 
 #include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/io/campaign/record_reader.h"
+#include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/compensation_text.h"
 #include "volcal/identify/text/atomic_folder.h"
@@ -19,6 +20,7 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/python/result.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/findings.h"
 #include "volcal/python/shared/long_work.h"
@@ -41,7 +43,8 @@ const TableFormat& format_named(const std::string& name) {
 MadeTables tables_of(const Result& result, const std::string& format_name, const std::string& type,
                      const std::string& tool, double step_mm, double rotary_step_deg, double tolerance_um,
                      const py::dict& settings, const py::dict& conditions, int positions, int grid,
-                     const std::string& zero, const std::string& run, const py::dict& record) {
+                     const std::string& zero, const std::string& run, const py::dict& record,
+                     const py::dict& lines) {
   if (zero != "mean" && zero != "plus")
     throw InputError({}, "zero \"" + zero + "\" is not known", "choose \"mean\" or \"plus\"");
   if (step_mm != 0.0 && tolerance_um != 0.0)
@@ -56,6 +59,7 @@ MadeTables tables_of(const Result& result, const std::string& format_name, const
   options.tool = tool;
   options.step = step_mm * kMetrePerMillimetre;
   options.rotary_step = rotary_step_deg * kRadianPerDegree;
+  if (!lines.empty()) options.lines = position_of(result.result.machine, lines, "lines");
   options.settings = named_texts(settings);
   options.conditions = stated_conditions(result.result, named_texts(conditions));
   options.record = {run, named_texts(record)};
@@ -100,6 +104,7 @@ std::string certificate_of(const Result& result, const MadeTables& tables, const
   return without_lock([&] {
     require_campaign_of(result.result, campaign);
     std::optional<MeasuredError> after;
+    if (verified != nullptr) readings_for(*verified, result.result, {verified->file, 0});
     if (verified != nullptr) after = measured_error(*verified);
     return report_html(CertificateView{result.result, tables, recorded, measured_error(campaign), after},
                        {.date = today(), .provenance = provenance_of("volcal.certificate")});
@@ -170,7 +175,7 @@ void define_tables(py::module_& module) {
       py::arg("tool") = "", py::arg("step_mm") = 0.0, py::arg("rotary_step_deg") = 0.0,
       py::arg("tolerance_um") = 0.0, py::arg("settings") = py::dict(), py::arg("conditions") = py::dict(),
       py::arg("positions") = 0, py::arg("grid") = 5, py::arg("zero") = "mean", py::arg("run") = "",
-      py::arg("record") = py::dict(),
+      py::arg("record") = py::dict(), py::arg("lines") = py::dict(),
       "Tables of an identified machine for a controller, as `volcal tables`: the same bytes.\n\n"
       "format: a name of table_formats(). type: \"L-POS\", \"L-STR\", \"L-SQU\", \"L-ANG\" joined by +, or "
       "\"L-VOL\"; \"\" = all that the format can do. tool: \"\" = the machine's first. step_mm, "
@@ -180,7 +185,8 @@ void define_tables(py::module_& module) {
       "name. "
       "conditions: {\"T_air\": 23.3, \"time_s\": 3600}. positions, grid, zero, run (which identification) "
       "and "
-      "record: of csv tables. Raises InputError.");
+      "record: of csv tables. lines: where the specific lines of L-POS, L-STR and L-SQU cross, "
+      "{\"x_mm\": 100.0}, axes not named at home; {} = the middle of the travel. Raises InputError.");
   module.def(
       "certificate", &certificate_of, py::arg("result"), py::arg("tables"), py::kw_only(),
       py::arg("record") = py::none(), py::arg("verified") = py::none(),

@@ -2,12 +2,16 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "volcal/identify/criticism/asked_laws.h"
+#include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/model_extension.h"
@@ -22,6 +26,7 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/python/model.h"
 #include "volcal/python/result.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/findings.h"
 #include "volcal/python/shared/long_work.h"
@@ -43,10 +48,17 @@ struct DiagnosisOf {
   }
 };
 
+constexpr long long kFewestFurther = 8, kMostFurther = 10000;  // as of the command line
+
 DiagnosisOf diagnose_campaign(const std::shared_ptr<Campaign>& campaign, const Model* model, bool climb,
                               int threads, const std::vector<std::string>& leave_out,
                               const std::vector<py::object>& separate, std::size_t readings,
-                              const py::object& progress) {
+                              const std::vector<std::string>& try_effects,
+                              const std::vector<std::string>& formula,
+                              const std::vector<std::string>& parameters, const py::object& progress) {
+  require_threads(threads);
+  require_range("readings", static_cast<long long>(readings), kFewestFurther, kMostFurther);
+  ModelSpec spec = spec_for(model, campaign->machine);
   DiagnoseOptions options;
   options.threads = threads;
   options.climb = climb;
@@ -54,9 +66,13 @@ DiagnosisOf diagnose_campaign(const std::shared_ptr<Campaign>& campaign, const M
   options.planning.readings = readings;
   for (const py::object& effect : separate)
     options.planning.separate.push_back(effect_spec_of(effect, campaign->machine, campaign.get()));
+  for (const WrittenEffect& tried : written_effects("try_effects", try_effects, parameters))
+    options.own.push_back(tried.spec);
+  for (const std::string& text : formula)
+    std::ranges::move(asked_laws(text, spec), std::back_inserter(options.asked_laws));
   options.progress = progress_to(progress);
   return without_lock([&] {
-    DiagnosisOf of{{}, campaign, model != nullptr ? model->spec : ModelSpec{}};
+    DiagnosisOf of{{}, campaign, spec};
     DiagnosedModel diagnosed = diagnosed_campaign(*campaign, of.model, options);
     of.diagnosis = std::move(diagnosed.diagnosis);
     of.fit = std::make_shared<const FitResult>(std::move(diagnosed.fit));
@@ -219,7 +235,9 @@ void define_diagnosis(py::module_& module) {
       "diagnose", &diagnose_campaign, py::arg("campaign").none(false), py::arg("model") = py::none(),
       py::kw_only(), py::arg("climb") = false, py::arg("threads") = 0,
       py::arg("leave_out") = std::vector<std::string>(), py::arg("separate") = py::list(),
-      py::arg("readings") = PlanningOptions{}.readings, py::arg("progress") = py::none(),
+      py::arg("readings") = PlanningOptions{}.readings, py::arg("try_effects") = std::vector<std::string>(),
+      py::arg("formula") = std::vector<std::string>(), py::arg("parameters") = std::vector<std::string>(),
+      py::arg("progress") = py::none(),
       "Where a model fails and which effect it lacks, as `volcal diagnose`: the same numbers to the last "
       "bit. Own "
       "effects (register_effect) are looked for too.\n\n"
@@ -228,6 +246,13 @@ void define_diagnosis(py::module_& module) {
       "separate: effects, as Model.extend takes them, that a next measurement should separate; readings: how "
       "many "
       "it may take.\n"
+      "try_effects: effects of one's own, \"TARGET: expression\" or \"TARGET += expression\", judged like "
+      "those of "
+      "the catalogue; parameters: of their expressions, as of try_effect(). formula: \"TARGET: DRIVERS\", "
+      "which law "
+      "of one to three recorded variables the target follows, or \"model\", laws behind the surfaces of the "
+      "model, "
+      "which is criticised without them.\n"
       "progress: called with the stage and the share of the work that is done, 0 to 1; what it raises ends "
       "the "
       "work, as does Ctrl-C when the next stage begins. Raises InputError.");

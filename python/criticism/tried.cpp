@@ -9,6 +9,7 @@
 #include "volcal/identify/session/tried_effect.h"
 #include "volcal/python/model.h"
 #include "volcal/python/result.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/long_work.h"
 
@@ -22,12 +23,11 @@ struct TriedOf {
 
 TriedOf try_written(const std::shared_ptr<Campaign>& campaign, const std::string& effect, const Model* model,
                     const std::vector<std::string>& parameters, int threads, const py::object& progress) {
+  require_threads(threads);
+  const ModelSpec spec = spec_for(model, campaign->machine);
   const WrittenEffect written = written_effect("effect", effect, parameters);
   const TryOptions options{threads, progress_to(progress)};
-  return without_lock([&] {
-    return TriedOf{effect,
-                   try_effect(*campaign, model != nullptr ? model->spec : ModelSpec{}, written, options)};
-  });
+  return without_lock([&] { return TriedOf{effect, try_effect(*campaign, spec, written, options)}; });
 }
 
 py::list tried_values_of(const TriedOf& of) {

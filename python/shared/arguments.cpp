@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
+
+#include "volcal/identify/numeric/threads.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal::python {
 namespace {
@@ -28,6 +32,13 @@ std::optional<py::ssize_t> first_masked(const py::handle& values) {
   const py::object mask = masked.attr("getmaskarray")(values);
   if (!mask.attr("any")().cast<bool>()) return std::nullopt;
   return mask.attr("argmax")().cast<py::ssize_t>();
+}
+
+bool is_complex(const py::handle& values) {
+  const py::array given = py::array::ensure(values);
+  if (given) return given.dtype().kind() == 'c';
+  PyErr_Clear();
+  return false;
 }
 
 Doubles numbers_of(const py::handle& values, const std::string& file, const std::string& what,
@@ -69,6 +80,29 @@ void require_positive(const std::string& argument, double value) {
 
 void require_not_negative(const std::string& argument, double value) {
   if (!std::isfinite(value) || value < 0.0) refuse_value(argument, value, "give 0 or a positive number");
+}
+
+void require_range(const std::string& argument, long long value, long long least, long long most) {
+  if (value >= least && value <= most) return;
+  throw InputError({}, fmt::format("{} is {}", argument, value), fmt::format("give {} to {}", least, most));
+}
+
+void require_threads(int threads) { require_range("threads", threads, 0, kMostThreads); }
+
+AxisPosition position_of(const Machine& machine, const py::dict& given, const std::string& argument) {
+  AxisPosition position{};
+  for (const Axis& axis : machine.axes) position[index_of(axis.name)] = axis.home;
+  for (const auto& [name, value] : given) {
+    const std::string key = py::str(name).cast<std::string>();
+    const auto axis = std::ranges::find_if(
+        machine.axes, [&](const Axis& each) { return position_column(each.name) == key; });
+    if (axis == machine.axes.end())
+      throw InputError({}, argument + ": " + key + " is not a position of an axis of the machine",
+                       "give x_mm, y_mm, z_mm ...");
+    position[index_of(axis->name)] =
+        number_of(value, argument + " " + key) * position_unit(axis->name).si_per_unit;
+  }
+  return position;
 }
 
 std::string text_key(const py::handle& key, const std::string& of) {

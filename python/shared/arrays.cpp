@@ -10,20 +10,40 @@
 namespace volcal::python {
 namespace {
 
-std::string joined_values(const std::string& key, const py::handle& sequence) {
+constexpr int kDeepest = 100;  // as in files
+
+std::string toml_value_at(const std::string& key, const py::handle& value, int depth);
+
+std::string joined_values(const std::string& key, const py::handle& sequence, int depth) {
   std::string text;
-  for (const py::handle item : sequence) text += (text.empty() ? "" : ", ") + toml_value(key, item);
+  for (const py::handle item : sequence) text += (text.empty() ? "" : ", ") + toml_value_at(key, item, depth);
   return text;
 }
 
-std::string toml_table(const std::string& key, const py::handle& mapping) {
+std::string toml_table(const std::string& key, const py::handle& mapping, int depth) {
   std::string text;
   for (const py::handle item : mapping.attr("items")()) {
     const auto [given, value] = item.cast<std::pair<py::object, py::object>>();
     const std::string name = text_key(given, key);
-    text += (text.empty() ? "" : ", ") + toml_text(name) + " = " + toml_value(key + "." + name, value);
+    text +=
+        (text.empty() ? "" : ", ") + toml_text(name) + " = " + toml_value_at(key + "." + name, value, depth);
   }
   return "{ " + text + " }";
+}
+
+std::string toml_value_at(const std::string& key, const py::handle& value, int depth) {
+  if (depth > kDeepest)
+    throw InputError({}, key.substr(0, key.find('.')) + " is nested too deeply, or holds itself",
+                     "give a list or a mapping of texts and numbers");
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (py::isinstance<py::str>(value)) return toml_text(value.cast<std::string>());
+  if (py::isinstance<py::int_>(value)) return py::str(value).cast<std::string>();
+  if (PyFloat_Check(value.ptr()) != 0) return py::repr(py::float_(value.cast<double>())).cast<std::string>();
+  if (py::hasattr(value, "items")) return toml_table(key, value, depth + 1);
+  if (py::hasattr(value, "tolist")) return toml_value_at(key, value.attr("tolist")(), depth + 1);
+  if (py::isinstance<py::sequence>(value)) return "[" + joined_values(key, value, depth + 1) + "]";
+  throw InputError({}, key + " is a " + py::str(py::type::of(value).attr("__name__")).cast<std::string>(),
+                   "give a text, a number, a boolean, a list or a mapping");
 }
 
 }  // namespace
@@ -61,15 +81,7 @@ py::object frame_of(const py::dict& columns) {
 }
 
 std::string toml_value(const std::string& key, const py::handle& value) {
-  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  if (py::isinstance<py::str>(value)) return toml_text(value.cast<std::string>());
-  if (py::isinstance<py::int_>(value)) return py::str(value).cast<std::string>();
-  if (PyFloat_Check(value.ptr()) != 0) return py::repr(py::float_(value.cast<double>())).cast<std::string>();
-  if (py::hasattr(value, "items")) return toml_table(key, value);
-  if (py::hasattr(value, "tolist")) return toml_value(key, value.attr("tolist")());
-  if (py::isinstance<py::sequence>(value)) return "[" + joined_values(key, value) + "]";
-  throw InputError({}, key + " is a " + py::str(py::type::of(value).attr("__name__")).cast<std::string>(),
-                   "give a text, a number, a boolean, a list or a mapping");
+  return toml_value_at(key, value, 0);
 }
 
 std::string toml_lines(const py::handle& mapping, const std::vector<std::string>& without) {

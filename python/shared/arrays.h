@@ -34,7 +34,8 @@ py::object from_json(const std::string& text);
 /// pandas.DataFrame of columns; ImportError where there is no pandas.
 py::object frame_of(const py::dict& columns);
 
-/// A value in TOML: text, number, boolean, list, array, table. Throws InputError naming `key` for another.
+/// A value in TOML: text, number, boolean, list, array, table. Throws InputError naming `key` for another,
+/// and for one that is nested too deeply or holds itself.
 std::string toml_value(const std::string& key, const py::handle& value);
 /// "key = value" lines of a mapping but for the keys in `without`.
 std::string toml_lines(const py::handle& mapping, const std::vector<std::string>& without = {});

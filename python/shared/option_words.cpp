@@ -10,8 +10,8 @@ namespace volcal::python {
 namespace {
 
 /// Options whose values are written otherwise, before the others.
-const std::array<std::pair<std::regex, const char*>, 13>& phrases() {
-  static const std::array<std::pair<std::regex, const char*>, 13> phrases = {{
+const std::array<std::pair<std::regex, const char*>, 15>& phrases() {
+  static const std::array<std::pair<std::regex, const char*>, 15> phrases = {{
       {std::regex(R"(volcal diagnose --list prints)"), "volcal.effect_kinds() has"},
       {std::regex(R"(volcal budget MACHINE\.toml --tolerances FILE)"), "budget(machine, tolerances=FILE)"},
       {std::regex(R"(--work-offset (G[0-9.]+)=X\.\.\.,Y\.\.\.,Z\.\.\. in mm)"),
@@ -27,6 +27,8 @@ const std::array<std::pair<std::regex, const char*>, 13>& phrases() {
       {std::regex(R"(\(--list says how\))"), "(volcal tables --list says how)"},
       {std::regex(R"(, or overwrite it with --force|; --force overwrites files of the same names)"), ""},
       {std::regex(R"(another folder with -o)"), "another folder"},
+      {std::regex(R"(\(--verbose\))"), "(Result.findings has all)"},
+      {std::regex(R"(hold lines out: volcal compare --held-out)"), "hold lines out: compare(held_out=True)"},
   }};
   return phrases;
 }
@@ -39,8 +41,10 @@ constexpr std::array kArguments = std::to_array<std::pair<std::string_view, std:
     {"campaign", "campaign"},
     {"conditions", "conditions"},
     {"decimals", "decimals"},
+    {"disturb", "disturb"},
     {"extend", "extend"},
     {"format", "format"},
+    {"formula", "formula"},
     {"grid", "grid"},
     {"instrument", "instrument"},
     {"model", "model"},

@@ -194,6 +194,73 @@ class Draws(Fitted):
         self.assertIn("status", str(read))
 
 
+class OtherMachines(Fitted):
+    def test_a_model_of_another_machine(self) -> None:
+        machine = self.campaign.machine
+        text = machine.to_toml().replace("travel_mm = [-250, 250]", "travel_mm = [-251, 250]")
+        self.assertNotEqual(text, machine.to_toml())
+        other = volcal.Model(volcal.Machine.parse(text))
+        for what in (lambda: volcal.fit(self.campaign, other), lambda: volcal.Session(self.campaign, other),
+                     lambda: volcal.diagnose(self.campaign, other), lambda: volcal.plan(machine, other, readings=64),
+                     lambda: volcal.try_effect(self.campaign, "EXX: dir_x", other),
+                     lambda: other.extend("reversal:EXX", self.campaign)):
+            self.refused(what, "the model is for another machine", "travel of X", "use a model of the same machine")
+
+    def test_a_result_of_another_machine(self) -> None:
+        other = volcal.read_campaign(HIDDEN / "25" / "campaign.toml")
+        tables = volcal.tables(self.result, format="linuxcnc")
+        for what in (lambda: volcal.validate(other, self.result), lambda: volcal.compare(other, [self.result]),
+                     lambda: volcal.certificate(self.result, tables, verified=other)):
+            self.refused(what, "another machine", "give errors and a campaign of the same machine")
+
+
+class Numbers(Fitted):
+    def test_threads(self) -> None:
+        works: list[Callable[[int], object]] = [
+            lambda n: volcal.fit(self.campaign, threads=n), lambda n: volcal.validate(self.campaign, self.result, threads=n),
+            lambda n: volcal.diagnose(self.campaign, threads=n), lambda n: volcal.Session(self.campaign, threads=n),
+            lambda n: volcal.compare(self.campaign, ["nominal"], threads=n),
+            lambda n: volcal.try_effect(self.campaign, "EXX: dir_x", threads=n),
+            lambda n: volcal.montecarlo(self.campaign, self.result, threads=n),
+            lambda n: volcal.plan(self.campaign.machine, readings=64, threads=n)]
+        for work in works:
+            for threads in (-1, 1025):
+                self.refused(lambda: work(threads), f"threads is {threads}", "0 to 1024")
+
+    def test_plans(self) -> None:
+        wrong: list[tuple[dict[str, Any], str]] = [
+            ({"stations": 0}, "stations is 0"), ({"stations": 13}, "1 to 12"), ({"readings": 1}, "readings is 1"),
+            ({"time_h": NAN}, "time_h is nan"), ({"bar_mm": -1.0}, "bar_mm is -1"), ({"bar_sigma_um": 0.0}, "bar_sigma_um is 0")]
+        for arguments, words in wrong:
+            error = self.refused(lambda: volcal.plan(self.campaign.machine, **{"readings": 64, **arguments}), words)
+            self.assertNotIn("--", str(error))
+
+    def test_draws(self) -> None:
+        wrong: list[tuple[dict[str, Any], str]] = [
+            ({"refits": -1}, "refits is -1"), ({"grid": 12}, "0 to 11"), ({"digits": 3}, "digits is 3"),
+            ({"most_draws": 0}, "most_draws is 0"), ({"digits": 1, "draws": 50}, "digits and draws are given"),
+            ({"disturb": ["reversal:EXX"]}, "disturb reversal:EXX"), ({"conditions": {"T_q": 20.0}}, "conditions T_q")]
+        for arguments, words in wrong:
+            error = self.refused(lambda: volcal.montecarlo(self.campaign, self.result, **arguments), words)
+            self.assertNotIn("--", error.problem)
+
+    def test_effects(self) -> None:
+        wrong: Any
+        for wrong in (3, None, 2.5):
+            self.refused(lambda: volcal.Model(self.campaign.machine).extend(wrong), "an effect is a", "KIND:TARGET")
+            self.refused(lambda: volcal.diagnose(self.campaign, separate=[wrong]), "an effect is a")
+        self.refused(lambda: volcal.diagnose(self.campaign, readings=7), "readings is 7")
+        self.refused(lambda: volcal.diagnose(self.campaign, try_effects=["EXX: dir_x *"]), "dir_x *")
+        self.refused(lambda: volcal.diagnose(self.campaign, formula=["model"]), "formula model", "no effect of kind")
+
+    def test_points_beyond_the_readings(self) -> None:
+        result = self.result
+        self.assertTrue(result.errors_at(x_mm=[0.0, 399.999])["extrapolated"][1])
+        self.refused(lambda: result.errors_at(x_mm=[0.0, 399.999], within_readings=True), "point 2", "X at 399.999 mm",
+                     "beyond the readings")
+        result.errors_at(x_mm=[0.0], within_readings=True)
+
+
 class Messages(FittedCase):
     def test_options_become_arguments_and_names_of_files_stay(self) -> None:
         text = str(self.refused(lambda: volcal.tables(self.result, tool="zz"), "tool zz"))

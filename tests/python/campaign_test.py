@@ -22,6 +22,7 @@ class FromFiles(Case):
         np.testing.assert_allclose(setup["length_mm"], table["length_mm"], rtol=0, atol=1e-10)
         np.testing.assert_array_equal(setup["dir_x"], table["dir_x"])
         self.assertEqual(list(setup.to_dict()), setup.columns)
+        self.assertEqual((list(setup), "x_mm" in setup, "q_mm" in setup, 3 in setup), (setup.columns, True, False, False))
         with self.assertRaisesRegex(KeyError, "length_mm"):
             setup["length_m"]
 
@@ -103,6 +104,15 @@ class FromArrays(Case):
         self.refused(lambda: volcal.Campaign.from_arrays(self.machine, self.setups), "station_mm is a object")
         self.setups[0]["station_mm"] = [1.0, 2.0]
         self.refused(lambda: volcal.Campaign.from_arrays(self.machine, self.setups), "station_mm")
+
+    def test_what_holds_itself(self) -> None:
+        endless: list[object] = []
+        endless.append(endless)
+        ring: dict[str, object] = {}
+        ring["constant_um"] = ring
+        self.setups[0]["station_mm"] = endless
+        self.refused(lambda: volcal.Campaign.from_arrays(self.machine, self.setups), "station_mm is nested too deeply")
+        self.refused(lambda: volcal.Campaign.from_arrays(self.machine, [], noise=ring), "constant_um is nested too deeply")
 
     def test_lists_and_integers_are_converted(self) -> None:
         readings = self.readings(2)

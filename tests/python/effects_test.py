@@ -74,6 +74,7 @@ class OwnEffects(Case):
         def driver(readings: volcal.Readings) -> NDArray[np.float64]:
             self.assertEqual(readings.points_mm.shape, (len(readings), 3))
             self.assertEqual(readings.variables, ["x", "tool_length"])
+            self.assertEqual((list(readings), "x" in readings, "y" in readings), (["x", "tool_length"], True, False))
             self.assertEqual(readings.instrument, "laser-tracer")
             self.assertEqual(len(set(readings["tool_length"])), 1)
             with self.assertRaisesRegex(KeyError, "y is not among the variables"):
@@ -96,13 +97,20 @@ class OwnEffects(Case):
         refused(lambda readings: readings["x"][:-1], "(192,)")
         refused(lambda readings: readings["x"] * np.nan, "not finite")
         refused(lambda readings: "none", "(192,)")
+        refused(lambda readings: readings["x"] * 1j, "complex", "real numbers")
+        refused(lambda readings: readings["x"] * 1e200, "beyond 1e+12", "scale it")
+
+        kept: list[volcal.Readings] = []
 
         def raises(readings: volcal.Readings) -> NDArray[np.float64]:
+            kept.append(readings)
             raise ZeroDivisionError("mine")
 
         self.register("wrong", driver=raises, target="EXX", variables=["x"])
         with self.assertRaisesRegex(ZeroDivisionError, "mine"):
             self.fit(self.model.extend("wrong:EXX", self.campaign), threads=4)
+        with self.assertRaisesRegex(RuntimeError, "while the driver is called"):
+            kept[0]["x"]
 
     def test_what_is_not_recorded(self) -> None:
         self.register("hot", variables=["T_spindle"], driver=lambda readings: readings["T_spindle"])
@@ -112,6 +120,8 @@ class OwnEffects(Case):
 
     def test_what_cannot_be_registered(self) -> None:
         self.refused(lambda: self.register("reversal"), "one of the library's")
+        for kind in ("a:b", "", "a b", "a;b"):
+            self.refused(lambda: self.register(kind), "cannot be the name of a kind", "letters, digits, - and _")
         self.refused(lambda: self.register("a", target="EQQ"), "EQQ", "not a target")
         self.refused(lambda: self.register("a", variables=["speed"]), "speed is not a variable")
         self.refused(lambda: self.register("a", variables=[]), "depends on nothing")

@@ -3,6 +3,7 @@
 import functools
 import importlib.util
 import json
+import pickle
 import sys
 import types
 import unittest
@@ -215,6 +216,14 @@ class Arrays(Fitted):
 
 
 class Shown(Fitted):
+    def test_a_result_of_files_is_told_as_it_was_fitted(self) -> None:
+        self.result.write(self.folder / "result", report=False)
+        read = str(volcal.read_result(self.folder / "result"))
+        told = str(self.result).splitlines()
+        self.assertEqual(read.splitlines()[:2], told[:2])
+        self.assertLess(len(read.splitlines()), 30)
+        self.assertNotIn("--", read)
+
     def test_in_a_notebook(self) -> None:
         html = self.result._repr_html_()
         for text in ("<table>", "EXX", "EC0Y", "<svg", "status lack_of_fit"):
@@ -253,6 +262,20 @@ class Shown(Fitted):
 
 
 class Models(Fitted):
+    def test_machines_and_models_are_pickled(self) -> None:
+        machine = pickle.loads(pickle.dumps(self.campaign.machine))
+        self.assertEqual((machine.to_toml(), machine.name), (self.campaign.machine.to_toml(), self.campaign.machine.name))
+        model = coarse(self.campaign).extend("reversal:EXX", self.campaign)
+        again = pickle.loads(pickle.dumps(model))
+        self.assertEqual((again.to_toml(), again.effects), (model.to_toml(), model.effects))
+        one, other = (volcal.fit(self.campaign, each, noise="white", screening=False) for each in (model, again))
+        np.testing.assert_array_equal(one.parameters, other.parameters)
+        identified = pickle.loads(pickle.dumps(self.result.model))
+        self.assertEqual(volcal.compare(self.campaign, [identified]).rms, volcal.compare(self.campaign, [self.result.model]).rms)
+        for what in (self.campaign, self.result, self.campaign.setups[0]):
+            with self.assertRaisesRegex(TypeError, "pickle"):
+                pickle.dumps(what)
+
     def test_models_are_read_extended_and_written(self) -> None:
         machine = self.campaign.machine
         model = volcal.Model.read(MODEL, machine)
@@ -280,7 +303,8 @@ class Programs(Fitted):
                                  tool_lengths={1: 150.0})
         told = (self.folder / "out.ngc").read_text().splitlines()
         differing = [pair for pair in zip(done.text.splitlines(), told, strict=True) if pair[0] != pair[1]]
-        self.assertEqual([own for own, _ in differing], ["(volcal compensate: in Python)"])
+        made_of = f"a fit of {self.campaign.file} G54=X10,Y-20,Z-250 H1=150"
+        self.assertEqual([own for own, _ in differing], [f"(volcal compensate: {made_of})"])
         self.assertLess(done.rms_after, 0.1 * done.rms_before)
         stated = volcal.compensate(self.result, program, work_offsets={"G54": (10.0, -20.0, -250.0)},
                                    tool_lengths={1: 150.0}, conditions={"T_column": 23.3})

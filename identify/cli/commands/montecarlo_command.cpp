@@ -3,9 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -16,12 +14,12 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
-#include "volcal/identify/criticism/catalogue/named_effect.h"
 #include "volcal/identify/criticism/screening.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/checkpoint_file.h"
 #include "volcal/identify/io/results/montecarlo_writer.h"
+#include "volcal/identify/montecarlo/disturbance.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/field_text.h"
@@ -33,7 +31,6 @@
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
-#include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
 namespace {
@@ -71,36 +68,6 @@ FitResult fitted(const MonteCarloArguments& arguments, const Campaign& campaign,
   FitResult result = fit(campaign, model, options);
   if (is_first(arguments)) screen_fit(campaign, options, result);
   return result;
-}
-
-/// KIND:TARGET=U, a normal distribution with standard uncertainty U, or KIND:TARGET=+-A, a rectangular one of
-/// half width A; in the edge unit of the effect's amplitude.
-Disturbance disturbance(const std::string& text, const Campaign& campaign) {
-  const std::size_t equals = text.rfind('=');
-  const std::string value_text = equals == std::string::npos ? "" : text.substr(equals + 1);
-  const bool is_rectangular = value_text.starts_with("+-");
-  const std::string number = is_rectangular ? value_text.substr(2) : value_text;
-  double value = 0.0;
-  if (!CLI::detail::lexical_cast(number, value) || !std::isfinite(value) || value <= 0.0) {
-    throw InputError(
-        {}, "--disturb " + text + ": how large the effect may be is missing or not positive",
-        "write KIND:TARGET=U for a standard uncertainty, KIND:TARGET=+-A for limits, in the unit "
-        "that volcal diagnose --list prints");
-  }
-  constexpr double kMostDisturbed = 1e4;  // um, urad, um/m, 1/K: ten millimetres or 1 % are no disturbance
-  if (value > kMostDisturbed) {
-    throw InputError({}, "--disturb " + text + ": no effect is so large",
-                     "give at most 1e4, in the unit that volcal diagnose --list prints");
-  }
-  const EffectSpec spec = named_effect("--disturb", text.substr(0, equals), campaign);
-  const auto effect = find_effect(spec.kind)->make(spec, {});
-  const EffectAmplitude& amplitude = effect->amplitudes().front();
-  const double divisor = is_rectangular ? std::numbers::sqrt3 : 1.0;
-  return {.effect = spec,
-          .sigma = value * amplitude.si_per_unit() / divisor,
-          .words = fmt::format("{}, {} {} {}", text.substr(0, equals),
-                               is_rectangular ? "within +-" : "u =", number, amplitude.unit()),
-          .shape = is_rectangular ? DistributionShape::Rectangular : DistributionShape::Normal};
 }
 
 std::string checkpoint_path(const MonteCarloArguments& arguments) {
@@ -221,7 +188,7 @@ MonteCarloOptions study_options(const MonteCarloArguments& arguments, const Camp
   options.path = draw_path(arguments.path);
   options.sources.functions = function_roughness(arguments.functions);
   for (const std::string& text : arguments.disturbances)
-    options.sources.disturbances.push_back(disturbance(text, campaign));
+    options.sources.disturbances.push_back(disturbance_from(text, campaign));
   return options;
 }
 

@@ -55,24 +55,6 @@ std::vector<AxisPosition> points_of(const FitResult& result, const TablesArgumen
   return points;
 }
 
-/// `at`: the point as it was typed.
-[[noreturn]] void refuse_extrapolated(const std::string& at, const Machine& machine,
-                                      const MeasuredTravel& measured, const AxisPosition& position) {
-  std::string why = "a curve or surface of the model was drawn from readings elsewhere";
-  for (const Axis& axis : machine.axes) {
-    const double q = position[index_of(axis.name)];
-    const MeasuredEnds& ends = measured[axis.name];
-    if (!ends.is_beyond(q)) continue;
-    const Unit unit = position_unit(axis.name);
-    why = fmt::format("{} at {:.6g} {} lies beyond the readings, {:.6g} to {:.6g} {}", letter_of(axis.name),
-                      q / unit.si_per_unit, unit.suffix, ends.first / unit.si_per_unit,
-                      ends.last / unit.si_per_unit, unit.suffix);
-    break;
-  }
-  throw InputError({}, "--no-extrapolation: --at " + at + ": " + why,
-                   "name a point within the readings, or leave the option out");
-}
-
 std::vector<VolumetricError> errors_at_points(const FitResult& result, const TablesArguments& arguments) {
   std::vector<VolumetricError> errors;
   const Conditions conditions = conditions_of(result, arguments.conditions);
@@ -83,9 +65,9 @@ std::vector<VolumetricError> errors_at_points(const FitResult& result, const Tab
     for (const AxisPosition& position : points_of(result, arguments)) {
       require_identified_rotary_axes(result, position);
       errors.push_back(volumetric_error(result, field, position, tool, direction));
-      if (arguments.conditions.no_extrapolation && errors.back().extrapolated)
-        refuse_extrapolated(arguments.at[errors.size() - 1 - first], result.machine, field.measured(),
-                            position);
+      if (arguments.conditions.no_extrapolation)
+        require_measured("--at " + arguments.at[errors.size() - 1 - first], result.machine, field.measured(),
+                         position, errors.back());
     }
   }
   return errors;

@@ -408,13 +408,7 @@ void check_machine(const TomlDocument& document, const std::string& file, const 
   if (!named) return;
   const std::string path = resolve_path(file, *named);
   if (!machine.file.empty() && same_file(path, machine.file)) return;
-  const Machine own = read_machine(path, root.place("machine"));
-  const std::string difference = machine_difference(own, machine);
-  if (difference.empty()) return;
-  root.fail("machine",
-            "the model is for another machine than " + (machine.file.empty() ? "this one" : machine.file) +
-                ": " + difference,
-            "use a model of the same machine");
+  require_machine_of_model(read_machine(path, root.place("machine")), machine, root.place("machine"));
 }
 
 /// A folder is no model; what to give in its place.
@@ -457,6 +451,15 @@ std::string machine_difference(const Machine& a, const Machine& b) {
       return difference;
   }
   return "";
+}
+
+void require_machine_of_model(const Machine& own, const Machine& machine, const SourcePlace& place) {
+  const std::string difference = machine_difference(own, machine);
+  if (difference.empty()) return;
+  throw InputError(place,
+                   "the model is for another machine than " +
+                       (machine.file.empty() ? "this one" : machine.file) + ": " + difference,
+                   "use a model of the same machine");
 }
 
 ModelSpec read_model(const std::string& path, const Machine& machine, const SourcePlace& named_at) {

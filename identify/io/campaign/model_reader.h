@@ -42,4 +42,8 @@ ModelFile read_model_with_machine(const std::string& path, const SourcePlace& na
 /// empty when there is none. Names and tools may differ.
 std::string machine_difference(const Machine& a, const Machine& b);
 
+/// Throws InputError, at `place`, where a model of the machine `own` is given for `machine` and they differ
+/// (machine_difference()).
+void require_machine_of_model(const Machine& own, const Machine& machine, const SourcePlace& place);
+
 }  // namespace volcal

@@ -67,4 +67,22 @@ void require_conditions_of_readings(const FitResult& result, const Conditions& c
   }
 }
 
+void require_measured(const std::string& at, const Machine& machine, const MeasuredTravel& measured,
+                      const AxisPosition& position, const VolumetricError& error) {
+  if (!error.extrapolated) return;
+  std::string why = "a curve or surface of the model was drawn from readings elsewhere";
+  for (const Axis& axis : machine.axes) {
+    const double q = position[index_of(axis.name)];
+    const MeasuredEnds& ends = measured[axis.name];
+    if (!ends.is_beyond(q)) continue;
+    const Unit unit = position_unit(axis.name);
+    why = fmt::format("{} at {:.6g} {} lies beyond the readings, {:.6g} to {:.6g} {}", letter_of(axis.name),
+                      q / unit.si_per_unit, unit.suffix, ends.first / unit.si_per_unit,
+                      ends.last / unit.si_per_unit, unit.suffix);
+    break;
+  }
+  throw InputError({}, "--no-extrapolation: " + at + ": " + why,
+                   "name a point within the readings, or leave the option out");
+}
+
 }  // namespace volcal

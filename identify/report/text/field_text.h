@@ -6,6 +6,7 @@
 #include <string>
 
 #include "volcal/identify/errors/error_field.h"
+#include "volcal/identify/errors/error_tables.h"
 
 namespace volcal {
 
@@ -19,6 +20,10 @@ nlohmann::ordered_json conditions_json(const FitResult& result, const Conditions
 /// Throws InputError where an axis was measured over a part of its travel, or where the conditions lie beyond
 /// those of the readings.
 void require_within_readings(const FitResult& result, const Conditions& conditions);
+/// Throws InputError for an error that was extrapolated: it names the axis that `position` is beyond the
+/// readings of. `at`: "--at X=900", as the user gave it.
+void require_measured(const std::string& at, const Machine& machine, const MeasuredTravel& measured,
+                      const AxisPosition& position, const VolumetricError& error);
 /// Throws InputError where the conditions lie beyond those of the readings.
 void require_conditions_of_readings(const FitResult& result, const Conditions& conditions);
 

@@ -27,11 +27,19 @@ constexpr std::size_t kListedOutliers = 10;
 constexpr std::size_t kLeadingMessages = 3;
 constexpr std::size_t kLeadingEffects = 4;
 
-std::string headline(const FitResult& result, const Campaign& campaign) {
+/// A result that was read from files has no residuals and knows their number.
+std::size_t observations_of(const FitResult& result) {
+  if (!result.residuals.empty()) return result.residuals.size();
+  std::size_t count = 0;
+  for (const SetupSummary& setup : result.setups) count += setup.observations;
+  return count;
+}
+
+std::string headline(const FitResult& result) {
   return fmt::format(
       "{} ({})\n{} readings in {} setups; status {}; sigma0 {:.3f} (chi2/dof with the stated noise {:.3f})\n",
-      campaign.machine.name, campaign.machine.structure.code,
-      count_number(static_cast<long long>(result.residuals.size())), result.setups.size(),
+      result.machine.name, result.machine.structure.code,
+      count_number(static_cast<long long>(observations_of(result))), result.setups.size(),
       to_string(result.status), result.sigma0, result.sigma0 * result.sigma0);
 }
 
@@ -321,7 +329,7 @@ std::string rank_text(const FitResult& result) {
 }
 
 std::string fit_text(const FitResult& result, const Campaign& campaign) {
-  std::string text = headline(result, campaign) + reference_line(result);
+  std::string text = headline(result) + reference_line(result);
   for (const std::string& part :
        {errors_table(result), setups_table(result), variance_table(result), noise_table_text(result.noise),
         outliers_table(result, campaign), notes(result)}) {
@@ -330,8 +338,8 @@ std::string fit_text(const FitResult& result, const Campaign& campaign) {
   return text;
 }
 
-std::string fit_summary_text(const FitResult& result, const Campaign& campaign) {
-  return headline(result, campaign) + reference_line(result) + errors_lines(result) + effects_lines(result) +
+std::string fit_summary_text(const FitResult& result) {
+  return headline(result) + reference_line(result) + errors_lines(result) + effects_lines(result) +
          setups_line(result) + noise_line(result.noise) + outliers_line(result) + rank_text(result) + "\n" +
          leading_messages(result);
 }

@@ -15,6 +15,7 @@
 #include "volcal/identify/cli/options/picture.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
+#include "volcal/identify/criticism/asked_laws.h"
 #include "volcal/identify/criticism/catalogue/named_effect.h"
 #include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/criticism/formulas/formula_search.h"
@@ -29,7 +30,6 @@
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/session/diagnosed_campaign.h"
 #include "volcal/identify/text/atomic_folder.h"
-#include "volcal/model/effects/kinds/open/empirical.h"
 
 namespace volcal::cli {
 namespace {
@@ -93,34 +93,6 @@ void write_diagnosis(const DiagnoseArguments& arguments, const Campaign& campaig
                          arguments.output, more);
 }
 
-constexpr const char* kOfModel = "model";
-
-/// Takes surfaces out of the model: laws are looked for in their place, not beside them.
-std::vector<EffectSpec> taken_out(ModelSpec& model, const std::function<bool(const EffectSpec&)>& is_wanted) {
-  std::vector<EffectSpec> taken;
-  std::ranges::copy_if(model.effects, std::back_inserter(taken), is_wanted);
-  std::erase_if(model.effects, is_wanted);
-  return taken;
-}
-
-/// A target with its drivers, as the surface of the model where it has that; or all surfaces of the model.
-void add_asked_laws(const std::string& text, ModelSpec& model, DiagnoseOptions& options) {
-  std::vector<EffectSpec> surfaces;
-  if (text == kOfModel) {
-    surfaces = taken_out(model, [](const EffectSpec& effect) { return is_surface(effect); });
-    if (surfaces.empty())
-      throw InputError({model.file, 0}, "--formula model: the model has no effect of kind \"empirical\"",
-                       "give a model that has one with --model, or write --formula \"TARGET: DRIVERS\"");
-  } else {
-    const EffectSpec asked = written_surface("--formula", text);
-    surfaces = taken_out(model, [&asked](const EffectSpec& effect) {
-      return is_surface(effect) && is_same_function(effect, asked);
-    });
-    if (surfaces.empty()) surfaces = {asked};
-  }
-  options.asked_laws.insert(options.asked_laws.end(), surfaces.begin(), surfaces.end());
-}
-
 /// Where an effect was found, how it enters the model, and how that is fitted.
 std::string what_next(const DiagnoseArguments& arguments, const Diagnosis& diagnosis) {
   if (accepted_effects(diagnosis).empty()) return "";
@@ -159,7 +131,8 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   for (const WrittenEffect& tried : written_effects("--try", arguments.tried, arguments.parameters))
     options.own.push_back(tried.spec);
   ModelSpec criticised = model;
-  for (const std::string& text : arguments.laws) add_asked_laws(text, criticised, options);
+  for (const std::string& text : arguments.laws)
+    std::ranges::move(asked_laws(text, criticised), std::back_inserter(options.asked_laws));
   ProgressBar bar("diagnose");
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
   const DiagnosedModel diagnosed = diagnosed_campaign(campaign, criticised, options);

@@ -5,17 +5,24 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "volcal/identify/criticism/screening.h"
+#include "volcal/identify/io/results/known_errors.h"
+#include "volcal/identify/report/text/validation_text.h"
+#include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit_words.h"
 #include "volcal/python/model.h"
 #include "volcal/python/result.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
 #include "volcal/python/shared/findings.h"
 #include "volcal/python/shared/long_work.h"
+#include "volcal/python/shared/option_words.h"
 
 namespace volcal::python {
 namespace {
@@ -40,6 +47,8 @@ Result fit_campaign(const std::shared_ptr<Campaign>& campaign, const Model* mode
                     const std::string& outliers, const std::string& robust, const std::string& solver,
                     const std::string& noise, int threads, bool keep_stated_sigma, bool first_order,
                     bool screening, const py::object& progress) {
+  require_threads(threads);
+  const ModelSpec spec = spec_for(model, campaign->machine);
   FitOptions options;
   options.threads = threads;
   options.outliers = outlier_policy(outliers);
@@ -61,15 +70,28 @@ Result fit_campaign(const std::shared_ptr<Campaign>& campaign, const Model* mode
   call.add("first_order", first_order, false);
   call.add("screening", screening, true);
   return without_lock([&] {
-    Result fitted{fit(*campaign, model != nullptr ? model->spec : ModelSpec{}, options), campaign};
-    if (screening) screen_fit(*campaign, options, fitted.result);
+    Result fitted{screening ? screened_fit(*campaign, spec, options) : fit(*campaign, spec, options),
+                  campaign};
     fitted.result.provenance = provenance_of(call.text());
     return fitted;
   });
 }
 
-py::dict validation_figures(const Campaign& campaign, const Result& result, int threads) {
+/// A campaign in the frame of the errors that it judges, with what is to be said of both among its notes.
+Campaign judging_campaign(const Campaign& given, const FitResult& errors) {
+  std::optional<Campaign> aligned = readings_for(given, errors, {given.file, 0});
+  Campaign campaign = aligned ? std::move(*aligned) : given;
+  std::ranges::move(differing_compensations(campaign, errors), std::back_inserter(campaign.notes));
+  note_judgement(errors, campaign);
+  return campaign;
+}
+
+py::dict validation_figures(const Campaign& given, const Result& result, int threads) {
+  require_threads(threads);
+  const FittedReadings fitted = fitted_readings(given, result.result);
+  Campaign campaign = judging_campaign(given, result.result);
   const Validation validation = without_lock([&] { return validate(campaign, result.result, threads); });
+  std::ranges::copy(validation.contradicted, std::back_inserter(campaign.notes));
   const ValidationFigures& figures = validation.figures;
   py::dict dict;
   dict["rms_before"] = figures.rms_before;
@@ -84,9 +106,9 @@ py::dict validation_figures(const Campaign& campaign, const Result& result, int 
   dict["angle_readings"] = figures.angles;
   dict["reduced_chi2"] = figures.reduced_chi2;
   dict["coverage95"] = figures.coverage95;
-  std::vector<Finding> findings = differing_compensations(campaign, result.result);
-  std::ranges::copy(validation.contradicted, std::back_inserter(findings));
-  dict["findings"] = findings_of(findings);
+  dict["fitted_readings"] = fitted.is_known ? py::object(py::int_(fitted.readings)) : py::object(py::none());
+  dict["warning"] = text_of(with_arguments(seen_readings_warning(fitted)));
+  dict["findings"] = findings_of(campaign.notes);
   return dict;
 }
 
@@ -118,9 +140,14 @@ void define_fit(py::module_& module) {
       "are estimated anew, errors are not. rms_before, max_before (nominal machine), rms_after, "
       "max_after, m; "
       "angle_..., rad; readings, angle_readings: counts; reduced_chi2; coverage95: share of readings "
-      "within the "
-      "95 % interval, 0 to 1; findings: whether other compensations were active than while the errors "
-      "were identified, stated values of the campaign that its readings contradict. Raises InputError.");
+      "within the 95 % interval, 0 to 1.\n\n"
+      "fitted_readings: how many of the readings the fit was made from, None where the result does not say; "
+      "warning: that such readings prove nothing, \"\" where there are none.\n"
+      "findings: what was noticed while the campaign was read, whether other compensations were active than "
+      "while "
+      "the errors were identified, rotary axes without errors, readings beyond those of the errors, stated "
+      "values "
+      "that the readings contradict. Raises InputError, also for a result of another machine.");
 }
 
 }  // namespace volcal::python

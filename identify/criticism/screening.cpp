@@ -16,6 +16,8 @@
 namespace volcal {
 namespace {
 
+constexpr double kShareBeforeScans = 0.95;  // of the work of a fit
+
 /// The most improbable of all tests so far.
 class Leading {
  public:
@@ -187,12 +189,22 @@ bool is_without_noise(const FitOptions& options, const FitResult& result) {
 void screen_fit(const Campaign& campaign, const FitOptions& options, FitResult& result) {
   if (options.loss != RobustLoss::None || result.status == FitStatus::NotConverged) return;
   if (is_without_noise(options, result)) return;
-  constexpr double kShareBefore = 0.95;
-  if (options.progress) options.progress("scans of the residuals", kShareBefore);
+  if (options.progress) options.progress("scans of the residuals", kShareBeforeScans);
   const auto start = std::chrono::steady_clock::now();
   judge(screen(campaign, result, options.threads), result);
   result.timings.push_back({"scans of the residuals",
                             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+}
+
+FitResult screened_fit(const Campaign& campaign, const ModelSpec& model, const FitOptions& options) {
+  FitOptions before_scans = options;
+  before_scans.progress = [&](const std::string& stage, double done) {
+    if (options.progress && done < 1.0) options.progress(stage, std::min(done, kShareBeforeScans));
+  };
+  FitResult result = fit(campaign, model, before_scans);
+  screen_fit(campaign, options, result);
+  if (options.progress) options.progress("done", 1.0);
+  return result;
 }
 
 void judge(const Screening& screening, FitResult& result) {

@@ -32,6 +32,9 @@ Screening screen_evaluated(const Campaign& campaign, const FitResult& evaluated,
 /// loss has no likelihood, an adjustment that did not converge none to trust.
 void screen_fit(const Campaign& campaign, const FitOptions& options, FitResult& result);
 
+/// fit() and screen_fit(), progress over both.
+FitResult screened_fit(const Campaign& campaign, const ModelSpec& model, const FitOptions& options);
+
 /// A fit that a test contradicts lacks something: status Ok becomes LackOfFit, and a finding says so. Another
 /// one, the first of all, names setups whose sign or unit seems to be another.
 void judge(const Screening& screening, FitResult& result);

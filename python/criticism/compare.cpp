@@ -13,6 +13,7 @@
 
 #include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/criticism/screening.h"
+#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/io/results/residual_writer.h"
@@ -25,7 +26,9 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/python/model.h"
 #include "volcal/python/result.h"
+#include "volcal/python/shared/arguments.h"
 #include "volcal/python/shared/arrays.h"
+#include "volcal/python/shared/findings.h"
 #include "volcal/python/shared/long_work.h"
 
 namespace volcal::python {
@@ -68,7 +71,7 @@ GivenModel given_result(const std::string& name, const FitResult& result, const 
 GivenModel given_spec(const std::string& name, const Model& given, const Campaign& campaign) {
   GivenModel model{name, name, given.spec, given.spec};
   model.aligned = readings_for(campaign, stated_result(given.machine, given.spec), {name, 0});
-  if (!states_errors(given.spec)) model.name = "nominal machine (" + name + " holds no coefficients)";
+  model.name = compared_name(name, given.spec);
   return model;
 }
 
@@ -101,25 +104,19 @@ std::vector<GivenModel> given_models(const py::sequence& given, const std::vecto
   return models;
 }
 
-/// The campaign with what the models lack of its rotary axes, and where they hold errors, among its notes;
-/// itself where there is nothing to say.
+/// The campaign with what is to be said of the models among its notes.
 std::shared_ptr<const Campaign> with_notes(const std::shared_ptr<const Campaign>& campaign,
                                            const std::vector<GivenModel>& models) {
-  std::vector<Finding> missing;
+  std::vector<ModelSpec> specs;
+  std::vector<Finding> of_tables;
   for (const GivenModel& model : models) {
-    if (!states_errors(model.spec)) continue;
-    std::vector<Finding> found = missing_rotary_errors(*campaign, model.spec);
-    std::ranges::move(held_beyond_measured(*campaign, model.spec), std::back_inserter(found));
-    for (Finding& each : found) {
-      const auto same = [&](const Finding& other) {
-        return other.code == each.code && other.text("axis") == each.text("axis");
-      };
-      if (std::ranges::none_of(missing, same)) missing.push_back(std::move(each));
-    }
+    specs.push_back(model.spec);
+    if (model.result == nullptr) continue;
+    std::ranges::move(findings_of_tables(*model.result, tools_of_setups(*campaign)),
+                      std::back_inserter(of_tables));
   }
-  if (missing.empty()) return campaign;
   auto noted = std::make_shared<Campaign>(*campaign);
-  std::ranges::move(missing, std::back_inserter(noted->notes));
+  note_compared(specs, of_tables, *noted);
   return noted;
 }
 
@@ -162,6 +159,7 @@ std::vector<HeldOutModel> judged_on_heldout(const Campaign& campaign, const std:
 ComparisonOf compare_models(const std::shared_ptr<Campaign>& campaign, const py::sequence& given,
                             const std::vector<std::string>& names, bool held_out, std::size_t worst,
                             int threads, const py::object& callback) {
+  require_threads(threads);
   const std::vector<GivenModel> models = given_models(given, names, *campaign);
   const CompareProgress progress = progress_to(callback);
   return without_lock([&] {
@@ -240,6 +238,11 @@ void define_comparison(py::module_& module) {
                              [](const ComparedModel& model) { return model.comparison.total.angles.rms; });
           },
           "The same of angles, rad.")
+      .def_property_readonly(
+          "findings", [](const ComparisonOf& of) { return findings_of(of.campaign->notes); },
+          "What was noticed while the campaign was read, rotary axes of which a model has no errors, "
+          "readings beyond "
+          "those of its errors, what tables hold that they were read from.")
       .def_property_readonly(
           "residuals", &residual_views,
           "Per model one record per observation: structured arrays of shape (m,), SI, read-only, no "

@@ -21,7 +21,10 @@ class LongWork(Case):
         result = volcal.fit(self.campaign, coarse(self.campaign), progress=lambda stage, done: told.append((stage, done)))
         self.assertEqual(told[0], ("nuisance parameters on the nominal machine", 0.0))
         self.assertIn("scans of the residuals", [stage for stage, _ in told])
-        self.assertTrue(all(0.0 <= done <= 1.0 for _, done in told))
+        shares = [done for _, done in told]
+        self.assertEqual(shares, sorted(shares))
+        self.assertEqual(told[-1], ("done", 1.0))
+        self.assertEqual(sum(share == 1.0 for share in shares), 1)
         volcal.montecarlo(self.campaign, result, draws=200, refits=0, grid=0, path="linear",
                           progress=lambda stage, done: told.append((stage, done)))
         self.assertEqual(told[-1][1], 1.0)

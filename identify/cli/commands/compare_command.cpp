@@ -5,7 +5,6 @@
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,7 +27,6 @@
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/text_file.h"
-#include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
 namespace {
@@ -78,21 +76,12 @@ NamedModel load_result(const std::string& argument, const Campaign& campaign) {
           readings_for(campaign, result, {argument, 0})};
 }
 
-std::string counts_as_nothing(const ModelSpec& model, const std::vector<EffectSpec>& effects) {
-  std::string labels;
-  for (const EffectSpec& spec : effects)
-    labels += (labels.empty() ? "" : ", ") + effect_label(*find_effect(spec.kind)->make(spec, model.file));
-  return "without an amplitude, taken as zero: " + labels;
-}
-
 /// With values or without, which a fit of held-out lines finds.
 NamedModel load_model(const std::string& argument, const Campaign& campaign) {
   const ModelFile file = read_model_with_machine(argument, {}, &campaign.machine);
   NamedModel model{argument, file.spec, file.spec, true};
   model.aligned = readings_for(campaign, stated_result(file.machine, file.spec), {argument, 0});
-  if (!states_errors(model.spec)) model.name = "nominal machine (" + argument + " holds no coefficients)";
-  const std::vector<EffectSpec> without = effects_without_amplitude(model.spec);
-  if (!without.empty()) model.name += fmt::format(" ({})", counts_as_nothing(model.spec, without));
+  model.name = compared_name(argument, model.spec);
   return model;
 }
 
@@ -150,31 +139,14 @@ std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vec
   return judged;
 }
 
-void note_tables(const std::vector<NamedModel>& models, Campaign& campaign) {
-  for (const NamedModel& model : models)
-    campaign.notes.insert(campaign.notes.end(), model.of_tables.begin(), model.of_tables.end());
-}
-
-/// Each axis and each curve or surface once.
-void note_held_errors(const std::vector<NamedModel>& models, Campaign& campaign) {
-  std::set<std::string> said;
+void note_models(const std::vector<NamedModel>& models, Campaign& campaign) {
+  std::vector<ModelSpec> specs;
+  std::vector<Finding> of_tables;
   for (const NamedModel& model : models) {
-    for (Finding& held : held_beyond_measured(campaign, model.spec)) {
-      const std::string& what = held.has("axis") ? held.text("axis") : held.text("effect");
-      if (said.insert(what).second) campaign.notes.push_back(std::move(held));
-    }
+    specs.push_back(model.spec);
+    of_tables.insert(of_tables.end(), model.of_tables.begin(), model.of_tables.end());
   }
-}
-
-/// Of models that state errors, each axis once.
-void note_missing_rotary_errors(const std::vector<NamedModel>& models, Campaign& campaign) {
-  std::set<std::string> said;
-  for (const NamedModel& model : models) {
-    if (!states_errors(model.spec)) continue;
-    for (Finding& missing : missing_rotary_errors(campaign, model.spec)) {
-      if (said.insert(missing.text("axis")).second) campaign.notes.push_back(std::move(missing));
-    }
-  }
+  note_compared(specs, of_tables, campaign);
 }
 
 int run_compare(const CompareArguments& arguments) {
@@ -204,9 +176,7 @@ int run_compare(const CompareArguments& arguments) {
                       models.back().figures.circles);
     if (model.result) models.back().rotary = rotary_pictures(*model.result, readings);
   }
-  note_missing_rotary_errors(named, campaign);
-  note_held_errors(named, campaign);
-  note_tables(named, campaign);
+  note_models(named, campaign);
   std::vector<HeldOutModel> heldout;
   if (arguments.heldout) heldout = judge_heldout(campaign, named, arguments, comparison);
   const std::string json = comparison_json(campaign, models, heldout);

@@ -62,8 +62,7 @@ int run_fit(const FitArguments& arguments) {
   FitOptions options = fit_options(arguments);
   ProgressBar bar("fit");
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
-  FitResult result = fit(campaign, model, options);
-  screen_fit(campaign, options, result);
+  FitResult result = screened_fit(campaign, model, options);
   result.provenance = provenance();
   bar.finish();
   std::map<std::string, std::string> more;
@@ -72,7 +71,7 @@ int run_fit(const FitArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}\n", result_summary_json(result));
   } else {
-    fmt::print("{}", arguments.verbose ? fit_text(result, campaign) : fit_summary_text(result, campaign));
+    fmt::print("{}", arguments.verbose ? fit_text(result, campaign) : fit_summary_text(result));
     fmt::print("written: {} ({})\n", arguments.output,
                report_available() ? "report.html has all of it" : "--verbose prints all of it");
     if (result.status == FitStatus::LackOfFit) fmt::print("next: {}\n", diagnosis_of(arguments));

@@ -12,7 +12,6 @@
 #include "volcal/identify/cli/options/compensated_readings.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/provenance.h"
-#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/io/results/residual_writer.h"
@@ -121,14 +120,7 @@ int run_validate(const ValidateArguments& arguments) {
   const FittedReadings fitted = fitted_readings(campaign, result);
   if (auto aligned = readings_for(campaign, result, {arguments.campaign, 0})) campaign = std::move(*aligned);
   const std::optional<Verified> compensated = verify(arguments, result, campaign);
-  for (Finding& missing : missing_rotary_errors(campaign, result.identified)) {
-    missing.data["in_uncertainty"] = true;
-    campaign.notes.push_back(std::move(missing));
-  }
-  std::ranges::move(held_beyond_measured(campaign, model_of_result(result)),
-                    std::back_inserter(campaign.notes));
-  std::ranges::move(findings_of_tables(result, tools_of_setups(campaign)),
-                    std::back_inserter(campaign.notes));
+  note_judgement(result, campaign);
   const Validation validation = validate(campaign, result, arguments.threads);
   std::ranges::copy(validation.contradicted, std::back_inserter(campaign.notes));
   auto figures = validation_json(validation.figures, fitted);

@@ -4,9 +4,12 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "volcal/identify/report/values/compared_model.h"
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/finding.h"
+#include "volcal/model/description/model_spec.h"
 
 namespace volcal {
 
@@ -14,6 +17,16 @@ struct ComparisonTextOptions {
   bool all_cells = false;  ///< every cell; else the worst few of each breakdown
   std::size_t worst = 10;  ///< readings listed
 };
+
+/// What a model of a file is called: where it holds no coefficients it is the nominal machine, and effects
+/// without an amplitude count as nothing.
+std::string compared_name(const std::string& name, const ModelSpec& model);
+
+/// Adds to the notes of the campaign which of its rotary axes the models have no errors of, where it goes
+/// beyond the readings of their errors, each axis, curve and surface once, and what tables hold that they
+/// were read from (findings_of_tables()).
+void note_compared(std::span<const ModelSpec> models, const std::vector<Finding>& of_tables,
+                   Campaign& campaign);
 
 /// "where does the model fail", one to three sentences.
 std::string failure_sentence(const ComparedModel& model);

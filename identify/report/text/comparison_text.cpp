@@ -1,15 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 #include <utility>
 
+#include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/report/text/comparison_report.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/signed_means_text.h"
 #include "volcal/identify/report/text/standard_figures_text.h"
 #include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
@@ -315,6 +320,33 @@ std::string where_it_fails(const ComparedModel& model) {
 }
 
 }  // namespace
+
+std::string compared_name(const std::string& name, const ModelSpec& model) {
+  std::string called = states_errors(model) ? name : "nominal machine (" + name + " holds no coefficients)";
+  std::string labels;
+  for (const EffectSpec& spec : effects_without_amplitude(model))
+    labels += (labels.empty() ? "" : ", ") + effect_label(*find_effect(spec.kind)->make(spec, model.file));
+  if (!labels.empty()) called += " (without an amplitude, taken as zero: " + labels + ")";
+  return called;
+}
+
+void note_compared(std::span<const ModelSpec> models, const std::vector<Finding>& of_tables,
+                   Campaign& campaign) {
+  std::set<std::pair<FindingCode, std::string>> said;
+  std::vector<Finding> notes;
+  const auto note = [&](std::vector<Finding> findings) {
+    for (Finding& each : findings) {
+      if (said.emplace(each.code, each.text(each.has("axis") ? "axis" : "effect")).second)
+        notes.push_back(std::move(each));
+    }
+  };
+  for (const ModelSpec& model : models) {
+    if (states_errors(model)) note(missing_rotary_errors(campaign, model));
+  }
+  for (const ModelSpec& model : models) note(held_beyond_measured(campaign, model));
+  notes.insert(notes.end(), of_tables.begin(), of_tables.end());
+  std::ranges::move(notes, std::back_inserter(campaign.notes));
+}
 
 std::string failure_sentence(const ComparedModel& model) {
   std::string text = where_it_fails(model);

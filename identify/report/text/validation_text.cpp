@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/model/description/units.h"
 
@@ -31,6 +35,17 @@ std::string seen_readings_warning(const FittedReadings& fitted) {
                      counted(fitted.all), fmt::join(fitted.setups, ", "),
                      fitted.left_out > 0 ? ", without " + counted(fitted.left_out) + " that it left out" : "",
                      remedy);
+}
+
+void note_judgement(const FitResult& errors, Campaign& campaign) {
+  for (Finding& missing : missing_rotary_errors(campaign, errors.identified)) {
+    missing.data["in_uncertainty"] = true;
+    campaign.notes.push_back(std::move(missing));
+  }
+  std::ranges::move(held_beyond_measured(campaign, model_of_result(errors)),
+                    std::back_inserter(campaign.notes));
+  std::ranges::move(findings_of_tables(errors, tools_of_setups(campaign)),
+                    std::back_inserter(campaign.notes));
 }
 
 std::string validation_text(const Validation& validation, const FittedReadings& fitted) {

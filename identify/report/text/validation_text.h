@@ -15,6 +15,10 @@ std::string readings_seen_text(const FittedReadings& fitted);
 /// made from any.
 std::string seen_readings_warning(const FittedReadings& fitted);
 
+/// Adds to the notes of a campaign that judges errors which of its rotary axes they lack, where it goes
+/// beyond their readings, and what tables hold that they were read from.
+void note_judgement(const FitResult& errors, Campaign& campaign);
+
 std::string validation_text(const Validation& validation, const FittedReadings& fitted);
 nlohmann::ordered_json validation_json(const ValidationFigures& figures, const FittedReadings& fitted);
 

@@ -468,6 +468,17 @@ void TcpRewriter::rewrite(std::string_view line, const Sink& sink) {
   sink(line, written_);
 }
 
+TcpRewriteOptions tcp_options_of(const FitResult& result) {
+  TcpRewriteOptions options;
+  options.measured = MeasuredTravel(result);
+  options.identified.fill(false);
+  for (const AxisName axis : identified_rotary_axes(result))
+    options.identified[static_cast<std::size_t>(direction_of(axis))] = true;
+  for (const AxisName axis : result.machine.rotary_axes())
+    options.reference[static_cast<std::size_t>(direction_of(axis))] = reference_of(result, axis);
+  return options;
+}
+
 TcpSummary TcpRewriter::summary() const {
   TcpSummary summary = summary_;
   if (!(summary.length > 0.0)) return summary;

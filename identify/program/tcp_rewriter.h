@@ -43,6 +43,9 @@ struct TcpRewriteOptions {
   std::vector<std::string> header;         ///< lines above the program (program_header.h); empty = none
 };
 
+/// What a result says of the axes: which of them have errors, where the others must stay, where was measured.
+TcpRewriteOptions tcp_options_of(const FitResult& result);
+
 /// Weighted by length of the path of the functional point.
 struct TcpErrors {
   double rms = 0.0, max = 0.0;            ///< of the functional point, m

@@ -12,9 +12,6 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/program_setup.h"
 #include "volcal/identify/errors/acting_conditions.h"
-#include "volcal/identify/errors/error_tables.h"
-#include "volcal/identify/errors/errors_of_tables.h"
-#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/program/nc_check.h"
@@ -25,7 +22,6 @@
 #include "volcal/identify/report/text/program_text.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/text_file.h"
-#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
@@ -109,21 +105,12 @@ RewrittenProgram rewrite(const FitResult& result, const CompensateArguments& arg
   return done;
 }
 
-/// Of the tool that is corrected while no tool length is active.
-std::vector<Finding> of_tables(const FitResult& result, const CompensateArguments& arguments) {
-  const std::vector<Tool>& tools = result.machine.tools;
-  return findings_of_tables(result,
-                            {arguments.tool.empty() && !tools.empty() ? tools.front().name : arguments.tool});
-}
-
 void print_text(const RewrittenProgram& done, const FitResult& result, const CompensateArguments& arguments,
                 const Conditions& conditions) {
   fmt::print("{}", program_summary_text(done.summary));
   if (done.check) fmt::print("{}", program_check_text(*done.check));
   fmt::print("{}", conditions_text(result, conditions));
-  fmt::print("{}", findings_text(errors_in_no_table(result, identified_rotary_axes(result))));
-  fmt::print("{}{}", findings_text(result.rank.invisible), findings_text(contradictions(result)));
-  fmt::print("{}", findings_text(of_tables(result, arguments)));
+  fmt::print("{}", findings_text(program_findings(result, arguments.tool, false).all()));
   if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
 }
 
@@ -138,21 +125,15 @@ std::optional<TcpBegin> first_tcp(const std::string& program) {
 
 TcpRewriteOptions tcp_options(const FitResult& result, const CompensateArguments& arguments,
                               const Conditions& conditions, TcpBegin begin) {
-  TcpRewriteOptions options;
+  TcpRewriteOptions options = tcp_options_of(result);
   options.tolerance = arguments.tolerance_um * kMetrePerMicrometre;
   options.decimals_mm = arguments.decimals;
   options.decimals_deg = arguments.rotary_decimals;
   options.orientation = arguments.orientation;
   options.check = arguments.check;
-  options.measured = MeasuredTravel(result);
   options.within_readings = arguments.conditions.no_extrapolation;
   options.header = header(result, arguments, conditions,
                           begin == TcpBegin::ByName ? CommentStyle::Semicolon : CommentStyle::Brackets);
-  options.identified.fill(false);
-  for (const AxisName axis : identified_rotary_axes(result))
-    options.identified[static_cast<std::size_t>(direction_of(axis))] = true;
-  for (const AxisName axis : result.machine.rotary_axes())
-    options.reference[static_cast<std::size_t>(direction_of(axis))] = reference_of(result, axis);
   return options;
 }
 
@@ -177,26 +158,18 @@ TcpSummary rewrite_tcp(const FitResult& result, const CompensateArguments& argum
   return rewriter.summary();
 }
 
-/// Effects that no correction holds; errors of rotary axes are corrected here.
-std::vector<Finding> left_by_tcp(const FitResult& result) { return errors_in_no_table(result, {}); }
-
 int run_tcp(const FitResult& result, const CompensateArguments& arguments, const Conditions& conditions,
             TcpBegin begin) {
   const TcpSummary summary = rewrite_tcp(result, arguments, conditions, begin);
+  const ProgramFindings findings = program_findings(result, arguments.tool, true);
   if (arguments.json) {
     nlohmann::ordered_json json = tcp_summary_json(summary, arguments.check);
-    add_findings("effects_not_compensated", left_by_tcp(result), json);
-    json["conditions"] = conditions_json(result, conditions);
-    add_findings("invisible", result.rank.invisible, json);
-    add_findings("of_tables", of_tables(result, arguments), json);
-    add_findings("contradicted", contradictions(result), json);
+    add_program_findings(findings, result, conditions, json);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));
   } else {
-    fmt::print("{}{}{}{}{}", tcp_summary_text(summary, arguments.check), conditions_text(result, conditions),
-               findings_text(left_by_tcp(result)), findings_text(result.rank.invisible),
-               findings_text(contradictions(result)));
-    fmt::print("{}", findings_text(of_tables(result, arguments)));
+    fmt::print("{}{}{}", tcp_summary_text(summary, arguments.check), conditions_text(result, conditions),
+               findings_text(findings.all()));
     if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
@@ -215,11 +188,7 @@ int run_compensate(const CompensateArguments& arguments) {
   const RewrittenProgram done = rewrite(result, arguments, conditions);
   if (arguments.json) {
     nlohmann::ordered_json json = program_json(done.summary, done.check);
-    add_findings("effects_not_compensated", errors_in_no_table(result, identified_rotary_axes(result)), json);
-    json["conditions"] = conditions_json(result, conditions);
-    add_findings("invisible", result.rank.invisible, json);
-    add_findings("of_tables", of_tables(result, arguments), json);
-    add_findings("contradicted", contradictions(result), json);
+    add_program_findings(program_findings(result, arguments.tool, false), result, conditions, json);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));
   } else {

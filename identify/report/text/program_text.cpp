@@ -7,7 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/errors_of_tables.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
+#include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -168,6 +173,31 @@ nlohmann::ordered_json tcp_summary_json(const TcpSummary& summary, bool checked)
                      {"after", tcp_errors_json(summary.after)}};
   }
   return json;
+}
+
+std::vector<Finding> ProgramFindings::all() const {
+  std::vector<Finding> all;
+  for (const auto* part : {&not_compensated, &invisible, &contradicted, &of_tables})
+    all.insert(all.end(), part->begin(), part->end());
+  return all;
+}
+
+ProgramFindings program_findings(const FitResult& result, const std::string& tool, bool with_rotary_axes) {
+  const std::vector<Tool>& tools = result.machine.tools;
+  const std::vector<AxisName> left =
+      with_rotary_axes ? std::vector<AxisName>{} : identified_rotary_axes(result);
+  return {errors_in_no_table(result, left), result.rank.invisible,
+          findings_of_tables(result, {tool.empty() && !tools.empty() ? tools.front().name : tool}),
+          contradictions(result)};
+}
+
+void add_program_findings(const ProgramFindings& findings, const FitResult& result,
+                          const Conditions& conditions, nlohmann::ordered_json& json) {
+  add_findings("effects_not_compensated", findings.not_compensated, json);
+  json["conditions"] = conditions_json(result, conditions);
+  add_findings("invisible", findings.invisible, json);
+  add_findings("of_tables", findings.of_tables, json);
+  add_findings("contradicted", findings.contradicted, json);
 }
 
 }  // namespace volcal

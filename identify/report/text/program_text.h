@@ -4,9 +4,13 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "volcal/identify/errors/conditions.h"
 #include "volcal/identify/program/nc_check.h"
 #include "volcal/identify/program/tcp_rewriter.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/model/description/finding.h"
 
 namespace volcal {
 
@@ -25,5 +29,23 @@ nlohmann::ordered_json program_json(const NcRewriteSummary& summary,
 /// Of programs with tool centre point motion; `checked`: its figures of errors were filled.
 std::string tcp_summary_text(const TcpSummary& summary, bool checked);
 nlohmann::ordered_json tcp_summary_json(const TcpSummary& summary, bool checked);
+
+/// What is to be said of the errors that a program is rewritten by.
+struct ProgramFindings {
+  std::vector<Finding> not_compensated;
+  std::vector<Finding> invisible;
+  std::vector<Finding> of_tables;
+  std::vector<Finding> contradicted;
+
+  /// In the order in which they are told.
+  std::vector<Finding> all() const;
+};
+
+/// `tool`: corrected while no tool length is active, empty = the first. `with_rotary_axes`: their errors are
+/// corrected, too, as with tool centre point motion.
+ProgramFindings program_findings(const FitResult& result, const std::string& tool, bool with_rotary_axes);
+/// Adds them, and the conditions that the errors are stated for.
+void add_program_findings(const ProgramFindings& findings, const FitResult& result,
+                          const Conditions& conditions, nlohmann::ordered_json& json);
 
 }  // namespace volcal

@@ -1,0 +1,90 @@
+"""What the command line says of its figures, in Python: findings, warnings, the head of a rewritten program."""
+
+import gc
+import json
+import unittest
+from collections.abc import Sequence
+
+import volcal
+from support import HIDDEN, FittedCase, run_program
+
+FILE = HIDDEN / "21" / "campaign.toml"
+PROGRAM = "G21 G90\nG0 X0 Y0 Z-10\nG1 X100 F1000\nM2\n"
+
+
+class Fitted(FittedCase):
+    def setUp(self) -> None:
+        super().setUp()
+        self.folder_of_result = self.folder / "result"
+        self.result.write(self.folder_of_result, report=False)
+
+    def told(self, findings: Sequence[volcal.Finding]) -> list[str]:
+        return [str(finding) for finding in findings]
+
+
+class Findings(Fitted):
+    def test_their_data_are_their_own(self) -> None:
+        read = volcal.read_result(self.folder_of_result)
+        notes = volcal.read_campaign(HIDDEN / "25" / "campaign.toml").notes
+        findings = self.result.findings + read.findings + read.invisible + notes
+        self.assertGreater(len(findings), 0)
+        for finding in findings:
+            data = finding.data
+            gc.collect()
+            self.assertEqual((type(data), data), (dict, finding.data))
+            json.dumps(data)
+
+
+class Validation(Fitted):
+    def test_readings_of_the_fit_prove_nothing(self) -> None:
+        told = json.loads(run_program("validate", self.folder_of_result, FILE, "--json"))
+        figures = volcal.validate(self.campaign, self.result)
+        self.assertEqual(figures["fitted_readings"], told["fitted_readings"])
+        self.assertIn("this is the campaign that the fit was made from", figures["warning"])
+        self.assertNotIn("--", figures["warning"])
+        self.assertEqual(self.told(figures["findings"]), told.get("notes", []))
+
+    def test_of_an_aligned_result(self) -> None:
+        aligned = volcal.align(self.result, primary="Y", secondary="X").result
+        one, other = (volcal.validate(self.campaign, each) for each in (self.result, aligned))
+        self.assertAlmostEqual(one["rms_after"] * 1e6, other["rms_after"] * 1e6, places=3)
+
+    def test_comparisons_say_it_too(self) -> None:
+        told = json.loads(run_program("compare", FILE, self.folder_of_result, "--json"))
+        comparison = volcal.compare(self.campaign, [self.result])
+        self.assertEqual(self.told(comparison.findings), told.get("notes", []))
+
+
+class Programs(Fitted):
+    def test_a_program_says_what_it_is_valid_for(self) -> None:
+        program = self.folder / "part.ngc"
+        program.write_text(PROGRAM)
+        said = json.loads(run_program("compensate", self.folder_of_result, program, "-o", self.folder / "out.ngc", "--check",
+                                      "--work-offset", "G54=X1.5,Y0,Z-100", "--tool-length", "H1=50", "--json"))
+        read = volcal.read_result(self.folder_of_result)
+        done = volcal.compensate(read, PROGRAM, work_offsets={"G54": (1.5, 0.0, -100.0)}, tool_lengths={1: 50.0},
+                                 name=str(program))
+        self.assertEqual(done.text, (self.folder / "out.ngc").read_text())
+        self.assertIn("G54=X1.5,Y0,Z-100 H1=50", done.text)
+        del said["file"]
+        self.assertEqual(done.summary, said)
+        self.assertEqual(self.told(done.findings), said["effects_not_compensated"] + said["invisible"] + said["contradicted"]
+                         + said["of_tables"])
+        fresh = volcal.compensate(self.result, PROGRAM, work_offsets={"G54": (0.0, 0.0, -100.0)})
+        self.assertIn("volcal compensate: a fit of", fresh.text)
+
+    def test_a_result_that_lacks_something_says_so(self) -> None:
+        self.assertEqual(self.result.status, "lack_of_fit")
+        done = volcal.compensate(self.result, PROGRAM, work_offsets={"G54": (0.0, 0.0, -100.0)})
+        self.assertNotEqual(done.findings, [])
+        self.assertNotEqual(done.summary["contradicted"], [])
+
+    def test_what_turns_rotary_axes(self) -> None:
+        at = {"G54": (0.0, 0.0, -100.0)}
+        self.refused(lambda: volcal.compensate(self.result, PROGRAM, work_offsets=at, orientation=True),
+                     "no tool centre point motion", "leave orientation out")
+        self.refused(lambda: volcal.compensate(self.result, PROGRAM, work_offsets=at, rotary_decimals=9), "rotary_decimals is 9")
+
+
+if __name__ == "__main__":
+    unittest.main()

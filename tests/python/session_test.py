@@ -1,12 +1,15 @@
 """A session in Python against the command line."""
 
 import json
+import os
+import signal
+import threading
 import unittest
 
 import numpy as np
 
 import volcal
-from support import HIDDEN, Case, run_program
+from support import HIDDEN, Case, coarse, run_program
 
 CAMPAIGN = HIDDEN / "21" / "campaign.toml"
 REVERSAL = "reversal:EXX:dir_x:step"
@@ -47,6 +50,66 @@ class Session(Case):
         self.assertEqual(session.current.number, 0)
         self.assertFalse(session.undo())
         self.assertTrue(session.redo())
+
+    def test_one_operation_at_a_time(self) -> None:
+        campaign = volcal.read_campaign(CAMPAIGN)
+        session = volcal.Session(campaign, coarse(campaign))
+        lines = ["add " + REVERSAL, "confirm", "undo", "redo", "go 0", "refit"]
+        looks: list[int] = []
+
+        def look(stage: str, done: float) -> None:
+            looks.append(len(session.models))
+
+        def work(line: str) -> None:
+            try:
+                session.do(line, progress=look)
+            except volcal.InputError:
+                pass  # added already, nothing to undo
+
+        threads = [threading.Thread(target=work, args=(line,)) for line in lines]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertGreater(len(looks), 0)
+        for model in session.models[1:]:
+            self.assertEqual((model.parent, model.change), (0, "+ reversal EXX"))
+        alone = volcal.Session(campaign, coarse(campaign))
+        alone.add(REVERSAL)
+        alone.confirm()
+        session.do("go 1")
+        session.confirm()
+        np.testing.assert_array_equal(session.residual(), alone.residual())
+
+    def test_ctrl_c_ends_the_wait(self) -> None:
+        campaign = volcal.read_campaign(CAMPAIGN)
+        session = volcal.Session(campaign, coarse(campaign))
+        begun, end = threading.Event(), threading.Event()
+
+        def hold(stage: str, done: float) -> None:
+            begun.set()
+            end.wait(60.0)
+            raise StopIteration(stage)
+
+        def climb() -> None:
+            with self.assertRaises(StopIteration):
+                session.do("climb", progress=hold)
+
+        worker = threading.Thread(target=climb)
+        worker.start()
+        begun.wait(60.0)
+        timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            session.models
+        timer.join()
+        end.set()
+        worker.join()
+
+    def test_shares_that_judge(self) -> None:
+        campaign = volcal.read_campaign(CAMPAIGN)
+        for share in (-1.0, 0.0, 1.0, float("nan"), 0.6):
+            self.refused(lambda: volcal.Session(campaign, heldout_share=share), f"heldout_share is {share:g}", "0.01 to 0.5")
 
     def test_what_is_no_command_is_refused(self) -> None:
         self.refused(lambda: self.session.do("jump"), "jump", "commands are")

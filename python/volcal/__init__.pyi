@@ -1,4 +1,4 @@
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, TypeAlias
 
@@ -112,6 +112,8 @@ class Setup:
     def columns(self) -> list[str]: ...
     def __len__(self) -> int: ...
     def __getitem__(self, column: str) -> _Floats: ...
+    def __contains__(self, column: object) -> bool: ...
+    def __iter__(self) -> Iterator[str]: ...
     def to_dict(self) -> dict[str, _Floats]: ...
     def to_frame(self) -> Any: ...
 
@@ -139,6 +141,8 @@ class Campaign:
 
 class Readings:
     def __getitem__(self, variable: str) -> _Floats: ...
+    def __contains__(self, variable: object) -> bool: ...
+    def __iter__(self) -> Iterator[str]: ...
     def __len__(self) -> int: ...
     @property
     def variables(self) -> list[str]: ...
@@ -193,6 +197,7 @@ class Result:
         tool: str = "",
         approach: Mapping[str, int] = ...,
         conditions: Mapping[str, float] = ...,
+        within_readings: bool = False,
         **positions: ArrayLike,
     ) -> dict[str, NDArray[Any]]: ...
     def to_json(self) -> str: ...
@@ -350,6 +355,8 @@ class CompensatedProgram:
     @property
     def summary(self) -> dict[str, Any]: ...
     @property
+    def findings(self) -> list[Finding]: ...
+    @property
     def rms_before(self) -> float: ...
     @property
     def rms_after(self) -> float: ...
@@ -417,6 +424,8 @@ class Comparison:
     @property
     def angle_rms(self) -> list[float]: ...
     @property
+    def findings(self) -> list[Finding]: ...
+    @property
     def residuals(self) -> list[NDArray[np.void]]: ...
     def to_json(self) -> str: ...
     def to_dict(self) -> dict[str, Any]: ...
@@ -469,6 +478,9 @@ def diagnose(
     leave_out: Sequence[str] = ...,
     separate: Sequence[_Effect] = ...,
     readings: int = 48,
+    try_effects: Sequence[str] = ...,
+    formula: Sequence[str] = ...,
+    parameters: Sequence[str] = ...,
     progress: _Progress = None,
 ) -> Diagnosis: ...
 def compare(
@@ -505,7 +517,7 @@ def budget(
     tolerances: _Path | None = None,
     tool: str = "",
     conditions: Mapping[str, float] = ...,
-    grid: int = 7,
+    grid: int = 9,
     within_readings: bool = False,
 ) -> Budget: ...
 def montecarlo(
@@ -513,7 +525,7 @@ def montecarlo(
     result: Result,
     *,
     draws: int = 0,
-    digits: int = 2,
+    digits: int | None = None,
     most_draws: int = 10000000,
     seed: int = 1,
     path: str = "auto",
@@ -522,6 +534,9 @@ def montecarlo(
     grid: int = 3,
     threads: int = 0,
     minutes: float = 10.0,
+    disturb: Sequence[str] = ...,
+    conditions: Mapping[str, float] = ...,
+    within_readings: bool = False,
     progress: _Progress = None,
 ) -> MonteCarlo: ...
 def tables(
@@ -540,6 +555,7 @@ def tables(
     zero: str = "mean",
     run: str = "",
     record: Mapping[str, str] = ...,
+    lines: Mapping[str, float] = ...,
 ) -> Tables: ...
 def certificate(
     result: Result,
@@ -562,6 +578,8 @@ def compensate(
     tolerance_um: float = 0.5,
     arc_tolerance_um: float = 0.5,
     decimals: int = 4,
+    rotary_decimals: int = 5,
+    orientation: bool = False,
     conditions: Mapping[str, float] = ...,
     within_readings: bool = False,
     name: str = "program",

@@ -1,5 +1,6 @@
 """What is written of the module: stubs, docstrings, guide and notebook."""
 
+import ast
 import inspect
 import json
 import os
@@ -37,6 +38,35 @@ class Stubs(Case):
         # Their metaclass is pybind11's, and so is the constructor of those that only volcal makes.
         allowed.write_text("".join(rf"volcal\.{name}(\.__init__)?" + "\n" for name in classes))
         run_python("-m", "mypy.stubtest", "volcal", "--allowlist", str(allowed), "--ignore-unused-allowlist")
+
+
+class Defaults(Case):
+    """What mypy cannot see: functions of C++ have no signature but the first line of their docstring."""
+
+    def stated(self) -> list[tuple[str, str, str]]:
+        """Function, argument and literal default of the stubs."""
+        tree = ast.parse((PACKAGE / "__init__.pyi").read_text())
+        functions = [(node.name, node) for node in tree.body if isinstance(node, ast.FunctionDef)]
+        for of in tree.body:
+            if isinstance(of, ast.ClassDef):
+                functions += [(f"{of.name}.{node.name}", node) for node in of.body if isinstance(node, ast.FunctionDef)]
+        defaults = []
+        for name, node in functions:
+            plain = node.args.args[len(node.args.args) - len(node.args.defaults):]
+            pairs = [*zip(plain, node.args.defaults), *zip(node.args.kwonlyargs, node.args.kw_defaults)]
+            defaults += [(name, argument.arg, repr(ast.literal_eval(default))) for argument, default in pairs
+                         if default is not None and ast.unparse(default) != "..."]
+        return defaults
+
+    def test_they_are_those_of_the_module(self) -> None:
+        stated = [each for each in self.stated() if not each[0].startswith("InputError")]
+        self.assertGreater(len(stated), 60)
+        for name, argument, default in stated:
+            member: Any = volcal
+            for part in name.split("."):
+                member = getattr(member, part)
+            signature = (member.__doc__ or "").splitlines()[0]
+            self.assertRegex(signature, rf"\b{argument}: [^=]*= {re.escape(default)}[,)]", name)
 
 
 class Docstrings(Case):

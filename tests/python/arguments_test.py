@@ -232,7 +232,8 @@ class Numbers(Fitted):
             ({"stations": 0}, "stations is 0"), ({"stations": 13}, "1 to 12"), ({"readings": 1}, "readings is 1"),
             ({"time_h": NAN}, "time_h is nan"), ({"bar_mm": -1.0}, "bar_mm is -1"), ({"bar_sigma_um": 0.0}, "bar_sigma_um is 0")]
         for arguments, words in wrong:
-            error = self.refused(lambda: volcal.plan(self.campaign.machine, **{"readings": 64, **arguments}), words)
+            given: dict[str, Any] = {"readings": 64, **arguments}
+            error = self.refused(lambda: volcal.plan(self.campaign.machine, **given), words)
             self.assertNotIn("--", str(error))
 
     def test_draws(self) -> None:

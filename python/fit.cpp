@@ -10,9 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "volcal/identify/compensation/active_tables.h"
+#include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/criticism/screening.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/report/text/validation_text.h"
+#include "volcal/identify/report/values/measured_error.h"
 #include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit_words.h"
@@ -77,19 +80,51 @@ Result fit_campaign(const std::shared_ptr<Campaign>& campaign, const Model* mode
   });
 }
 
-/// A campaign in the frame of the errors that it judges, with what is to be said of both among its notes.
-Campaign judging_campaign(const Campaign& given, const FitResult& errors) {
-  std::optional<Campaign> aligned = readings_for(given, errors, {given.file, 0});
-  Campaign campaign = aligned ? std::move(*aligned) : given;
-  std::ranges::move(differing_compensations(campaign, errors), std::back_inserter(campaign.notes));
-  note_judgement(errors, campaign);
-  return campaign;
+/// Tables as a folder of them is read (superimposed on none).
+ActiveTables active_tables_of(const MadeTables& made, const std::string& identified_with) {
+  ActiveTables active{made.read_back, {}, false};
+  if (!names_compensations(identified_with)) return active;
+  const auto metadata = std::ranges::find(made.files, std::string("metadata.csv"), &TableFile::name);
+  active.is_doubtful = metadata == made.files.end() ||
+                       !stand_beside({metadata->name, whole_content(*metadata)}, identified_with);
+  return active;
 }
 
-py::dict validation_figures(const Campaign& given, const Result& result, int threads) {
+/// A campaign in the frame of the errors that it judges, with what is to be said of both among its notes.
+struct JudgingCampaign {
+  Campaign campaign;
+  std::optional<MeasuredError> with_tables;  ///< that were active
+};
+
+JudgingCampaign judging_campaign(const Campaign& given, const FitResult& errors, const MadeTables* tables,
+                                 int threads) {
+  std::optional<Campaign> aligned = readings_for(given, errors, {given.file, 0});
+  JudgingCampaign judging{aligned ? std::move(*aligned) : given, {}};
+  if (tables != nullptr) {
+    judging.with_tables = take_out_tables(active_tables_of(*tables, errors.active_compensations), errors,
+                                          judging.campaign, threads);
+  } else {
+    std::ranges::move(differing_compensations(judging.campaign, errors),
+                      std::back_inserter(judging.campaign.notes));
+  }
+  note_judgement(errors, judging.campaign);
+  return judging;
+}
+
+void add_measured(const MeasuredError& measured, py::dict& dict) {
+  dict["compensated_rms"] = measured.lengths.rms;
+  dict["compensated_max"] = measured.lengths.max;
+  dict["compensated_angle_rms"] = measured.angles.rms;
+  dict["compensated_angle_max"] = measured.angles.max;
+}
+
+py::dict validation_figures(const Campaign& given, const Result& result, const MadeTables* tables,
+                            int threads) {
   require_threads(threads);
   const FittedReadings fitted = fitted_readings(given, result.result);
-  Campaign campaign = judging_campaign(given, result.result);
+  JudgingCampaign judging =
+      without_lock([&] { return judging_campaign(given, result.result, tables, threads); });
+  Campaign& campaign = judging.campaign;
   const Validation validation = without_lock([&] { return validate(campaign, result.result, threads); });
   std::ranges::copy(validation.contradicted, std::back_inserter(campaign.notes));
   const ValidationFigures& figures = validation.figures;
@@ -106,6 +141,7 @@ py::dict validation_figures(const Campaign& given, const Result& result, int thr
   dict["angle_readings"] = figures.angles;
   dict["reduced_chi2"] = figures.reduced_chi2;
   dict["coverage95"] = figures.coverage95;
+  if (judging.with_tables) add_measured(*judging.with_tables, dict);
   dict["fitted_readings"] = fitted.is_known ? py::object(py::int_(fitted.readings)) : py::object(py::none());
   dict["warning"] = text_of(with_arguments(seen_readings_warning(fitted)));
   dict["findings"] = findings_of(campaign.notes);
@@ -134,13 +170,17 @@ void define_fit(py::module_& module) {
              "does Ctrl-C when the next stage begins. Raises InputError.");
   module.def(
       "validate", &validation_figures, py::arg("campaign").none(false), py::arg("result"), py::kw_only(),
-      py::arg("threads") = 0,
+      py::arg("tables") = py::none(), py::arg("threads") = 0,
       "How well a result predicts a campaign, as `volcal validate`: stations and other parameters of "
       "its setups "
       "are estimated anew, errors are not. rms_before, max_before (nominal machine), rms_after, "
       "max_after, m; "
       "angle_..., rad; readings, angle_readings: counts; reduced_chi2; coverage95: share of readings "
       "within the 95 % interval, 0 to 1.\n\n"
+      "tables: Tables of tables() that were active while the campaign was measured: the compensated machine "
+      "is "
+      "judged, by the readings less what the tables corrected; compensated_rms, compensated_max, m, "
+      "compensated_angle_..., rad: what it showed with them, off the machine without errors.\n"
       "fitted_readings: how many of the readings the fit was made from, None where the result does not say; "
       "warning: that such readings prove nothing, \"\" where there are none.\n"
       "findings: what was noticed while the campaign was read, whether other compensations were active than "

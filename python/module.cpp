@@ -14,10 +14,10 @@ PYBIND11_MODULE(_volcal, module) {
   define_campaign(module);
   define_effects(module);
   define_result(module);
+  define_tables(module);
   define_fit(module);
   define_diagnosis(module);
   define_montecarlo(module);
-  define_tables(module);
   define_compensation(module);
   define_plan(module);
   define_session(module);

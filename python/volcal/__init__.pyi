@@ -468,7 +468,9 @@ def fit(
     screening: bool = True,
     progress: _Progress = None,
 ) -> Result: ...
-def validate(campaign: Campaign, result: Result, *, threads: int = 0) -> dict[str, Any]: ...
+def validate(
+    campaign: Campaign, result: Result, *, tables: Tables | None = None, threads: int = 0
+) -> dict[str, Any]: ...
 def diagnose(
     campaign: Campaign,
     model: Model | None = None,

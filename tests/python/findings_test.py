@@ -44,6 +44,17 @@ class Validation(Fitted):
         self.assertNotIn("--", figures["warning"])
         self.assertEqual(self.told(figures["findings"]), told.get("notes", []))
 
+    def test_of_a_machine_with_tables(self) -> None:
+        tables = volcal.tables(self.result, format="csv", step_mm=50.0)
+        tables.write(self.folder / "tables")
+        told = json.loads(run_program("validate", self.folder_of_result, FILE, "--tables", self.folder / "tables", "--json"))
+        figures = volcal.validate(self.campaign, self.result, tables=tables)
+        for name in ("rms_before", "rms_after", "max_after", "compensated_rms", "compensated_max"):
+            self.assertAlmostEqual(figures[name] * 1e6, told[name + "_um"], places=9)
+        self.assertAlmostEqual(figures["reduced_chi2"], told["reduced_chi2"], places=9)
+        self.assertEqual(self.told(figures["findings"]), told.get("notes", []))
+        self.assertNotIn("compensated_rms", volcal.validate(self.campaign, self.result))
+
     def test_of_an_aligned_result(self) -> None:
         aligned = volcal.align(self.result, primary="Y", secondary="X").result
         one, other = (volcal.validate(self.campaign, each) for each in (self.result, aligned))

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "volcal/identify/cli/command.h"
-#include "volcal/identify/cli/options/compensated_readings.h"
 #include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/options/superimposed_tables.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
@@ -25,7 +25,6 @@
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/errors.h"
-#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal::cli {
@@ -84,17 +83,7 @@ std::optional<Verified> verify(const ValidateArguments& arguments, const FitResu
     return {};
   }
   const ActiveTables active = active_tables_for(arguments.tables, result.active_compensations);
-  if (active.is_doubtful)
-    campaign.notes.push_back(
-        {FindingCode::CompensationsInTables, {{"identified", result.active_compensations}}});
-  if (!names_compensations(campaign.active_compensations)) {
-    Finding unstated{FindingCode::CompensationsUnstated};
-    if (!campaign.active_compensations.empty()) unstated.data["stated"] = campaign.active_compensations;
-    campaign.notes.push_back(std::move(unstated));
-  }
-  Verified verified{measured_error(campaign, arguments.threads), active.former.has_value()};
-  campaign = without_corrections(std::move(campaign), active, arguments.threads);
-  return verified;
+  return Verified{take_out_tables(active, result, campaign, arguments.threads), active.former.has_value()};
 }
 
 std::string compensated_text(const Verified& verified) {

@@ -1,7 +1,6 @@
 #include "volcal/identify/cli/options/superimposed_tables.h"
 
 #include <filesystem>
-#include <map>
 
 #include "volcal/identify/compensation/csv_tables.h"
 #include "volcal/identify/text/csv_cell.h"
@@ -34,18 +33,6 @@ std::string words_of_former(const fs::path& file) {
                    "write the tables again");
 }
 
-bool stand_beside(const fs::path& file, const std::string& active_compensations) {
-  if (!is_file(file)) return false;
-  const std::map<std::string, std::string> entries =
-      read_table_metadata({file.string(), read_text_file(file.string())}).entries;
-  const auto says = [&](const std::string& key, const std::string& value) {
-    const auto found = entries.find(key);
-    return found != entries.end() && found->second == value;
-  };
-  return says(std::string(kSuperimposedOn), std::string(kSuperimposedOnNone)) &&
-         says(kActiveCompensations, active_compensations);
-}
-
 }  // namespace
 
 CompensationTables active_tables(const std::string& folder) {
@@ -63,15 +50,6 @@ void keep_former_tables(const std::string& former, const std::string& active_com
                                                            "," + csv_cell(active_compensations) + "\n");
 }
 
-Correction ActiveTables::correction(const AxisPosition& position, const ApproachDirection& direction) const {
-  Correction sum = tables.correction(position, direction);
-  if (!former) return sum;
-  const Correction before = former->correction(position, direction);
-  sum.linear -= before.linear;
-  sum.rotary -= before.rotary;
-  return sum;
-}
-
 ActiveTables active_tables_for(const std::string& folder, const std::string& active_compensations) {
   ActiveTables active{active_tables(folder), {}, false};
   if (!names_compensations(active_compensations)) return active;
@@ -83,7 +61,10 @@ ActiveTables active_tables_for(const std::string& folder, const std::string& act
       active.is_doubtful = true;
     }
   } else {
-    active.is_doubtful = !stand_beside(fs::path(folder) / kMetadata, active_compensations);
+    const fs::path metadata = fs::path(folder) / kMetadata;
+    active.is_doubtful =
+        !is_file(metadata) ||
+        !stand_beside({metadata.string(), read_text_file(metadata.string())}, active_compensations);
   }
   return active;
 }

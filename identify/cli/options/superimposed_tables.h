@@ -3,10 +3,9 @@
 /// what the former ones corrected and what was identified with these active. The folder keeps them below
 /// superimposed_on/tables, with what the campaign said of them in superimposed_on/metadata.csv.
 
-#include <optional>
 #include <string>
 
-#include "volcal/identify/compensation/compensation_tables.h"
+#include "volcal/identify/compensation/active_tables.h"
 #include "volcal/identify/text/atomic_folder.h"
 
 namespace volcal::cli {
@@ -18,18 +17,6 @@ CompensationTables active_tables(const std::string& folder);
 /// errors that the new tables were made from.
 void keep_former_tables(const std::string& former, const std::string& active_compensations,
                         const AtomicFolder& folder);
-
-/// Tables that were active, for a judgement by errors.
-struct ActiveTables {
-  CompensationTables tables;
-  /// That were active while the errors were identified, and that `tables` stand in place of.
-  std::optional<CompensationTables> former;
-  /// Nothing says whether the tables stand in place of what was active while the errors were identified.
-  bool is_doubtful = false;
-
-  /// What the tables correct of the machine that was identified.
-  Correction correction(const AxisPosition& position, const ApproachDirection& direction) const;
-};
 
 /// The tables in a folder, by the rules of their controller, for errors that were identified with
 /// `active_compensations`. Tables stand beside these where metadata.csv says that they are superimposed on

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "volcal/identify/compensation/active_tables.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/model/description/campaign.h"
@@ -20,6 +21,14 @@ struct MeasuredError {
 
 /// Throws InputError where the campaign cannot be evaluated.
 MeasuredError measured_error(const Campaign& campaign, int threads = 0);
+
+/// What a campaign shows that was measured with tables active. Its readings become what they would be without
+/// the tables, with those that they stand in place of: less what the corrections of all axes moved beyond
+/// these, to first order. Angles of a direct measurement lose what rotary axes were turned by and nothing
+/// else, since the linear axes' corrections turn nothing (ISO/TR 16907:2015, 11.3 b). Its notes say what is
+/// doubtful.
+MeasuredError take_out_tables(const ActiveTables& tables, const FitResult& errors, Campaign& campaign,
+                              int threads = 0);
 
 /// Throws InputError where the result was not identified from readings of the campaign.
 void require_campaign_of(const FitResult& result, const Campaign& campaign);

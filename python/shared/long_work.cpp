@@ -2,6 +2,9 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
+#include <memory>
+
 namespace volcal::python {
 namespace {
 
@@ -44,10 +47,11 @@ BlasOnOneThread::~BlasOnOneThread() {
 }
 
 std::function<void(const std::string& stage, double done)> progress_to(const py::handle& callback) {
-  return [callback](const std::string& stage, double done) {
+  return [callback, furthest = std::make_shared<double>(0.0)](const std::string& stage, double done) {
     const py::gil_scoped_acquire lock;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    if (!callback.is_none()) callback(stage, done);
+    *furthest = std::max(*furthest, done);
+    if (!callback.is_none()) callback(stage, *furthest);
   };
 }
 

@@ -19,8 +19,9 @@ class BlasOnOneThread {
 };
 
 /// What long work calls as its stages begin: raises what a signal raised (KeyboardInterrupt), and calls
-/// `callback`, unless it is None, with the stage and the share of the work that is done, 0 to 1. What that
-/// raises ends the work. The caller holds `callback` until the work has ended.
+/// `callback`, unless it is None, with the stage and the share of the work that is done, 0 to 1, which does
+/// not go back where a search begins another step. What that raises ends the work. The caller holds
+/// `callback` until the work has ended.
 std::function<void(const std::string& stage, double done)> progress_to(const py::handle& callback);
 
 /// Whatever may start threads, which may want to call Python, runs here.

@@ -29,6 +29,21 @@ class LongWork(Case):
                           progress=lambda stage, done: told.append((stage, done)))
         self.assertEqual(told[-1][1], 1.0)
 
+    def test_progress_does_not_go_back(self) -> None:
+        shares: list[float] = []
+        model = coarse(self.campaign)
+        result = volcal.fit(self.campaign, model, noise="white", screening=False)
+
+        def tell(stage: str, done: float) -> None:
+            shares.append(done)
+
+        for work in (lambda: volcal.diagnose(self.campaign, model, progress=tell),
+                     lambda: volcal.montecarlo(self.campaign, result, digits=1, refits=0, grid=0, path="linear", progress=tell)):
+            shares.clear()
+            work()
+            self.assertGreater(len(shares), 2)
+            self.assertEqual(shares, sorted(shares))
+
     def test_what_progress_raises_ends_the_work(self) -> None:
         def stop(stage: str, done: float) -> None:
             if done > 0.0:

@@ -37,8 +37,10 @@ class LongWork(Case):
         def tell(stage: str, done: float) -> None:
             shares.append(done)
 
-        for work in (lambda: volcal.diagnose(self.campaign, model, progress=tell),
-                     lambda: volcal.montecarlo(self.campaign, result, digits=1, refits=0, grid=0, path="linear", progress=tell)):
+        works: list[Callable[[], object]] = [
+            lambda: volcal.diagnose(self.campaign, model, progress=tell),
+            lambda: volcal.montecarlo(self.campaign, result, digits=1, refits=0, grid=0, path="linear", progress=tell)]
+        for work in works:
             shares.clear()
             work()
             self.assertGreater(len(shares), 2)

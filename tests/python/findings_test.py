@@ -6,7 +6,7 @@ import unittest
 from collections.abc import Sequence
 
 import volcal
-from support import HIDDEN, FittedCase, run_program
+from support import HIDDEN, Case, FittedCase, run_program, white_fit
 
 FILE = HIDDEN / "21" / "campaign.toml"
 PROGRAM = "G21 G90\nG0 X0 Y0 Z-10\nG1 X100 F1000\nM2\n"
@@ -95,6 +95,23 @@ class Programs(Fitted):
         self.refused(lambda: volcal.compensate(self.result, PROGRAM, work_offsets=at, orientation=True),
                      "no tool centre point motion", "leave orientation out")
         self.refused(lambda: volcal.compensate(self.result, PROGRAM, work_offsets=at, rotary_decimals=9), "rotary_decimals is 9")
+
+
+class TurningPrograms(Case):
+    def test_a_program_with_tool_centre_point_motion(self) -> None:
+        _, result = white_fit(HIDDEN / "61" / "campaign.toml")
+        result.write(self.folder / "result", report=False)
+        program = self.folder / "part.ngc"
+        program.write_text("G21 G90\nG43.4 H1\nG0 X0 Y0 Z-150 A0 C0\nG1 X20 Y10 Z-160 A10 C20 F1000\nG49\nM2\n")
+        said = json.loads(run_program("compensate", self.folder / "result", program, "-o", self.folder / "out.ngc", "--check",
+                                      "--work-offset", "G54=X0,Y0,Z-100", "--tool-length", "H1=150", "--orientation",
+                                      "--rotary-decimals", "6", "--json"))
+        done = volcal.compensate(volcal.read_result(self.folder / "result"), program.read_text(),
+                                 work_offsets={"G54": (0.0, 0.0, -100.0)}, tool_lengths={1: 150.0}, orientation=True,
+                                 rotary_decimals=6, name=str(program))
+        del said["file"]
+        self.assertEqual((done.text, done.summary), ((self.folder / "out.ngc").read_text(), said))
+        self.assertLess(done.rms_after, 0.1 * done.rms_before)
 
 
 if __name__ == "__main__":

@@ -112,10 +112,10 @@ JudgingCampaign judging_campaign(const Campaign& given, const FitResult& errors,
 }
 
 void add_measured(const MeasuredError& measured, py::dict& dict) {
-  dict["compensated_rms"] = measured.lengths.rms;
-  dict["compensated_max"] = measured.lengths.max;
-  dict["compensated_angle_rms"] = measured.angles.rms;
-  dict["compensated_angle_max"] = measured.angles.max;
+  dict["compensated_rms"] = measured.sizes.lengths.rms;
+  dict["compensated_max"] = measured.sizes.lengths.max;
+  dict["compensated_angle_rms"] = measured.sizes.angles.rms;
+  dict["compensated_angle_max"] = measured.sizes.angles.max;
 }
 
 py::dict validation_figures(const Campaign& given, const Result& result, const MadeTables* tables,

@@ -184,7 +184,8 @@ void define_session(py::module_& module) {
           "observation) and rms_heldout (SI). Raises ValueError where it cannot be added.")
       .def("do", &do_line, py::arg("line"), py::arg("progress") = py::none(),
            "Does what a line of `volcal session --do` says, and returns the current model: \"add "
-           "KIND:TARGET:DRIVER:SHAPE\", \"remove ...\", \"formula TARGET += EXPRESSION\", \"refit\", "
+           "KIND:TARGET:DRIVER:SHAPE\", \"remove ...\", \"formula TARGET += EXPRESSION with p=1800+-600\", "
+           "\"refit\", "
            "\"confirm\", \"climb\", \"draw N\", \"leave-out OBSERVATIONS REASON\", \"undo\", \"redo\", \"go "
            "N\". progress: as for fit(). Raises InputError.")
       .def(

@@ -42,8 +42,8 @@ class Certificate : public ::testing::Test {
     record_.instruments = {{"laser-tracer", "No. 12"}};
     before_.campaign = "before/campaign.toml";
     before_.setups = 3;
-    before_.lengths = {1000, 0.0, 11.2e-6, 35e-6};
-    before_.angles = {42, 0.0, 3.4e-6, 9e-6};
+    before_.sizes.lengths = {1000, 11.2e-6, 35e-6};
+    before_.sizes.angles = {42, 3.4e-6, 9e-6};
   }
   CertificateView view() const { return {fit_.result, tables_, record_, before_, after_}; }
   CertificateJson page(const std::string& kind) const {
@@ -100,7 +100,7 @@ TEST_F(Certificate, HasTheFiguresBeforeAndAfter) {
   EXPECT_DOUBLE_EQ(figures.at("measured").at(0).at("angles").at("max"), 9.0);
   EXPECT_FALSE(page("signature").at("measured_after").get<bool>());
   after_ = before_;
-  after_->lengths.rms = 1.5e-6;
+  after_->sizes.lengths.rms = 1.5e-6;
   EXPECT_DOUBLE_EQ(page("certificate_figures").at("measured").at(1).at("lengths").at("rms"), 1.5);
   EXPECT_TRUE(page("signature").at("measured_after").get<bool>());
 }

@@ -53,7 +53,7 @@ std::vector<EffectAmplitude> turns(const EffectTable& table, const std::string& 
 std::unique_ptr<FormulaEffect> make_spindle_direction(const EffectTable& table) {
   const std::string label = "direction of the spindle";
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"spindle-direction", TargetName::called("spindle"), EffectDriver::called("tool", {}),
+      EffectName{"spindle-direction", TargetName::called("spindle"), EffectDriver::called("tool_offset", {}),
                  "linear"},
       turns(table, label),
       [](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
@@ -108,7 +108,9 @@ const EffectKind& spindle_direction_effect() {
                        "taken from; tool offsets measured in another frame than that of the axes",
        .source = "ISO 230-1:2012, 10.3 (squareness of a spindle to axes); ISO/TR 16907:2015, 7.3",
        .polynomial = true,
-       .keys = turn_keys()},
+       .keys = turn_keys(),
+       .words = {{NamePart::Target, "spindle", "offsets of all tools, turned together"},
+                 {NamePart::Driver, "tool_offset", "offset of the tool that is carried"}}},
       make_spindle_direction, spindle_directions, example_of_direction);
   return kind;
 }

@@ -79,7 +79,8 @@ class Session(Case):
         alone.confirm()
         session.do("go 1")
         session.confirm()
-        np.testing.assert_array_equal(session.residual(), alone.residual())
+        # By whatever way the threads have led there; the last digits keep it.
+        np.testing.assert_allclose(session.residual(), alone.residual(), rtol=0.0, atol=1e-13)
 
     def test_ctrl_c_ends_the_wait(self) -> None:
         campaign = volcal.read_campaign(CAMPAIGN)

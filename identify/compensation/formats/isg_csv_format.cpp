@@ -33,7 +33,7 @@ constexpr std::array<TableSetting, 2> kIsgSettings = {
       "and look which way X moves at 0 degrees: towards - means relative",
       "", "relative"},
      {"reversal",
-      "lists or none: with lists, half the positioning reversal of every axis towards + and towards - as "
+      "lists or none: with lists, what positioning of every axis differs by towards + and towards - as "
       "leadscrew lists (isg-ssfk) beside the volumetric tables, which know no direction, where the type has "
       "L-POS; for axes that have no leadscrew compensation of their own",
       "none", "lists"}}};
@@ -112,22 +112,27 @@ std::string isg_grid(const CorrectionGrid& grid, const IsgSigns& sign) {
   return fmt::to_string(text);
 }
 
+constexpr ApproachDirection kTowardsMinus = {-1, -1, -1, -1, -1, -1, -1, -1, -1};
+
 bool has_reversal_lists(const TableFormatOptions& options) {
   return is_first_word(kIsgSettings, options, "reversal", "lists", "none") &&
          options.type.has(CompensationPart::Positioning);
 }
 
-/// What positioning along the specific lines leaves of the mean of both directions.
+/// What positioning along the specific lines differs by from the mean of both directions, which the tables
+/// hold: both are zero at home, the lists approached towards +.
 std::vector<TableFile> isg_reversal_lists(const FitResult& result, TableFormatOptions options) {
   options.type = CompensationPart::Positioning;
   std::vector<TableFile> files;
   for (const SampledTable& sampled : sample_axis_tables(isg_ssfk_format(), result, options)) {
-    AxisTable half = sampled.table;
-    for (std::size_t i = 0; i < half.position.size(); ++i) {
-      half.forward[i] = 0.5 * (sampled.table.forward[i] - sampled.table.backward[i]);
-      half.backward[i] = -half.forward[i];
+    const double at_home = -0.5 * sampled.table.value(home_of(result.machine), kTowardsMinus);
+    AxisTable differing = sampled.table;
+    for (std::size_t i = 0; i < differing.position.size(); ++i) {
+      const double half = 0.5 * (sampled.table.forward[i] - sampled.table.backward[i]);
+      differing.forward[i] = half - at_home;
+      differing.backward[i] = -half - at_home;
     }
-    files.push_back(ssfk_file(sampled.output, half));
+    files.push_back(ssfk_file(sampled.output, differing));
   }
   return files;
 }

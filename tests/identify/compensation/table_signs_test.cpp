@@ -112,16 +112,16 @@ TEST(SignByHand, NativeTablesHoldErrorsAndCompensations) {
 
 TEST(SignByHand, IsgHoldsErrorsInMm) {
   const auto files = files_of("isg-csv", long_axis(), CompensationPart::Positioning, {{"reversal", "lists"}});
-  EXPECT_THAT(content_of(files, "volcomp.csv"), HasSubstr("X EXX\n0.000000 -0.002000000\n"))
-      << "mean of both directions: the reversal is 4 um";
-  EXPECT_THAT(content_of(files, "volcomp.csv"), HasSubstr("1000.000000 0.008000000\n"));
-  EXPECT_THAT(content_of(files, "achskw1.lis"), HasSubstr(".pos 20\nkw.ssfk.table[1].pos 20\n"))
-      << "half the reversal";
+  EXPECT_THAT(content_of(files, "volcomp.csv"), HasSubstr("X EXX\n0.000000 0.000000000\n"))
+      << "mean of both directions, zero at home";
+  EXPECT_THAT(content_of(files, "volcomp.csv"), HasSubstr("1000.000000 0.010000000\n"));
+  EXPECT_THAT(content_of(files, "achskw1.lis"), HasSubstr(".pos 0\nkw.ssfk.table[0].neg -40\n"))
+      << "the reversal, zero at home towards +";
   EXPECT_NEAR(x_um("isg-csv", files, kFarX, 1), -10.0, 1e-6);
   EXPECT_NEAR(x_um("isg-csv", files, kFarX, -1), -6.0, 1e-6);
   const std::vector<TableFile> tables_alone(files.begin(), files.begin() + 2);
-  EXPECT_NEAR(x_um("isg-csv", tables_alone, kFarX, 1), -8.0, 1e-6);
-  EXPECT_NEAR(x_um("isg-csv", tables_alone, kFarX, -1), -8.0, 1e-6);
+  EXPECT_NEAR(x_um("isg-csv", tables_alone, kFarX, 1), -10.0, 1e-6);
+  EXPECT_NEAR(x_um("isg-csv", tables_alone, kFarX, -1), -10.0, 1e-6);
 }
 
 TEST(SignByHand, LeadscrewListsHoldErrorsInTenthsOfMicrometres) {
@@ -137,8 +137,8 @@ TEST(SignByHand, LeadscrewListsHoldErrorsInTenthsOfMicrometres) {
 
 TEST(SignByHand, EtalonExchangeHoldsErrorsInMm) {
   const auto files = files_of("etalon-exchange", long_axis(), CompensationPart::Positioning);
-  EXPECT_THAT(content_of(files, "volcomp.txt"), HasSubstr("[EXX]\nGridpoints = {\n0.000000 -0.002000000\n"));
-  EXPECT_THAT(content_of(files, "volcomp.txt"), HasSubstr("1000.000000 0.008000000\n}"));
+  EXPECT_THAT(content_of(files, "volcomp.txt"), HasSubstr("[EXX]\nGridpoints = {\n0.000000 0.000000000\n"));
+  EXPECT_THAT(content_of(files, "volcomp.txt"), HasSubstr("1000.000000 0.010000000\n}"));
 }
 
 /// What Y does to X stands under Y and X, not the other way round.
@@ -155,14 +155,14 @@ TEST(SignByHand, CausingAndCorrectedAxisStandInTheirPlaces) {
   const auto grid = files_of("isg-csv", long_axis(), CompensationType::volumetric());
   EXPECT_THAT(content_of(grid, "volcomp.csv"), HasSubstr("X Y Z EXX EYY EZZ\n"));
   EXPECT_THAT(content_of(grid, "volcomp.csv"),
-              HasSubstr("1000.000000 0.000000 0.000000 0.008000000 0.000000000 0.000000000\n"));
+              HasSubstr("1000.000000 0.000000 0.000000 0.010000000 0.000000000 0.000000000\n"));
 }
 
 TEST(SignByHand, SinumerikEncoderTablesHoldErrorsInMm) {
   const auto files = files_of("sinumerik", long_axis(), CompensationPart::Positioning);
-  EXPECT_THAT(content_of(files, "AX_EEC.INI"), HasSubstr("$AA_ENC_COMP[0,2,X1]=0.008000\n"));
+  EXPECT_THAT(content_of(files, "AX_EEC.INI"), HasSubstr("$AA_ENC_COMP[0,2,X1]=0.010000\n"));
   EXPECT_THAT(content_of(files, "AX_EEC.INI"), HasSubstr("$AA_ENC_COMP_STEP[0,X1]=500.000000\n"));
-  EXPECT_NEAR(x_um("sinumerik", files, kFarX, 1), -8.0, 1e-6);
+  EXPECT_NEAR(x_um("sinumerik", files, kFarX, 1), -10.0, 1e-6);
 }
 
 TEST(SignByHand, SinumerikCecIsAskedFor) {

@@ -14,8 +14,8 @@ namespace volcal {
 /// Every fifth line of every setup (ladder.h); a setup of which nothing would remain keeps all its readings.
 std::vector<std::vector<bool>> judging_rows(const Campaign& campaign, double share = 0.2);
 
-/// The campaign with the marked rows left out. They stay in their places: where a beam begins and points to, and
-/// what a late temperature has behind it, is that of the whole campaign.
+/// The campaign with the marked rows left out. They stay in their places: where a beam begins and points to,
+/// and what a late temperature has behind it, is that of the whole campaign.
 Campaign without_rows(const Campaign& campaign, const std::vector<std::vector<bool>>& marked);
 
 /// The model of a result with everything to be estimated again, functions that were smoothed at automatic

@@ -80,7 +80,11 @@ std::string quantity_table(const MonteCarloResult& result) {
 
 std::string refit_table(const RefitCheck& check) {
   TextTable table(
-      {{"path", Align::Left}, {"lengths [nm]"}, {"angles [nrad]"}, {"of tolerance"}, {"most of it at", Align::Left}},
+      {{"path", Align::Left},
+       {"lengths [nm]"},
+       {"angles [nrad]"},
+       {"of tolerance"},
+       {"most of it at", Align::Left}},
       fmt::format("Largest difference from full refits of the same {} draws", check.linear.draws));
   for (const auto& [name, path] : {std::pair("linear", &check.linear), std::pair("chord", &check.chord)}) {
     table.add_row({name, short_number(path->largest_length * 1e9, 2),

@@ -134,18 +134,12 @@ void known_probe_lobing(const HiddenSettings& settings, HiddenScene& scene) {
 
 std::vector<KnownKind> known_instrument_kinds() {
   return {
-      {"ball-bar-length", known_bar_length},
-      {"beam-misalignment", known_beam_misalignment},
-      {"dead-path", known_dead_path},
-      {"encoder-eccentricity", known_encoder_eccentricity},
-      {"length-scale", known_length_scale},
-      {"probe-lobing", known_probe_lobing},
-      {"run-offset", known_run_offset},
-      {"station-drift", known_station_drift},
-      {"spindle-direction", known_spindle_direction},
-      {"station-event", known_station_event},
-      {"tool-clamping", known_tool_clamping},
-      {"tool-offset", known_tool_offset},
+      {"ball-bar-length", known_bar_length},  {"beam-misalignment", known_beam_misalignment},
+      {"dead-path", known_dead_path},         {"encoder-eccentricity", known_encoder_eccentricity},
+      {"length-scale", known_length_scale},   {"probe-lobing", known_probe_lobing},
+      {"run-offset", known_run_offset},       {"spindle-direction", known_spindle_direction},
+      {"station-drift", known_station_drift}, {"station-event", known_station_event},
+      {"tool-clamping", known_tool_clamping}, {"tool-offset", known_tool_offset},
   };
 }
 

@@ -35,8 +35,8 @@ struct GenericTest {
   double log10_choices = 0.0;  ///< what the choice of the period adds to log10 p
 };
 
-/// SI: root mean square over the readings of what lowers the sum of weighted squares by `lm`, beside what the
-/// model can make of it itself; readings of the noise that is usual in the model.
+/// SI: root mean square over the readings of what lowers the sum of weighted squares by `lm`, without what
+/// the model can imitate; of readings with the root mean square of all standard deviations.
 double explained_rms(double lm, const LinearModel& model, const Projector& projector);
 
 /// What tests of a scan would explain, one a column: displacements of all observations, m or rad; of a kernel

@@ -2,6 +2,7 @@
 // Tools of different length or side offset are displaced against each other by what the turn makes of their
 // difference.
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "volcal/model/effects/formula_effect.h"
@@ -76,13 +77,13 @@ std::size_t different_tools(const Campaign& campaign) {
   return known.size();
 }
 
-std::vector<EffectSpec> spindle_directions(const Campaign& campaign) {
-  if (different_tools(campaign) < kFewestTools) return {};
+std::vector<EffectSpec> example_of_direction(const Campaign& /*campaign*/) {
   return {effect_spec("spindle-direction", {})};
 }
 
-std::vector<EffectSpec> example_of_direction(const Campaign& /*campaign*/) {
-  return {effect_spec("spindle-direction", {})};
+std::vector<EffectSpec> spindle_directions(const Campaign& campaign) {
+  return different_tools(campaign) < kFewestTools ? std::vector<EffectSpec>{}
+                                                  : example_of_direction(campaign);
 }
 
 std::vector<KeySchema> turn_keys() {
@@ -102,8 +103,8 @@ const EffectKind& spindle_direction_effect() {
       {.kind = "spindle-direction",
        .summary = "the spindle, and with it every tool, points elsewhere than the frame of the machine file "
                   "says: offsets o are displaced by t x o",
-       .plain = "The spindle is not where the machine's axes say: long tools are displaced more than short "
-                "ones.",
+       .plain = "The spindle does not point where the machine's axes say: long tools are displaced more than "
+                "short ones.",
        .usual_causes = "a head that is out of tram; the spindle not parallel to the axis that the datum is "
                        "taken from; tool offsets measured in another frame than that of the axes",
        .source = "ISO 230-1:2012, 10.3 (squareness of a spindle to axes); ISO/TR 16907:2015, 7.3",

@@ -29,8 +29,6 @@ namespace {
 
 using Point_mm = std::array<double, 3>;
 
-constexpr int kFewestRotaryDecimals = 3, kMostRotaryDecimals = 8;  // as of the command line
-
 struct CompensatedProgram {
   std::string text;
   nlohmann::ordered_json summary;

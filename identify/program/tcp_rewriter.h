@@ -30,6 +30,9 @@
 
 namespace volcal {
 
+/// Of TcpRewriteOptions::decimals_deg.
+inline constexpr int kFewestRotaryDecimals = 3, kMostRotaryDecimals = 8;
+
 struct TcpRewriteOptions {
   double tolerance = 0.5e-6;  ///< of the corrected path, m; of rotary positions a tenth of a metre away
   int decimals_mm = 4;        ///< of coordinates in mm; inches get one more

@@ -246,7 +246,7 @@ std::function<int()> define_compensate(CLI::App& app) {
       ->check(CLI::Range(kFewestDecimals, kMostDecimals));
   app.add_option("--rotary-decimals", arguments->rotary_decimals,
                  "of positions of rotary axes in deg; default 5")
-      ->check(CLI::Range(3, 8));
+      ->check(CLI::Range(kFewestRotaryDecimals, kMostRotaryDecimals));
   app.add_flag("--orientation", arguments->orientation,
                "with tool centre point motion: turn the tool's axis to where it is meant, too (FOR, ISO/TR "
                "16907, 8.2.6)");

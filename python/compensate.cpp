@@ -14,6 +14,7 @@
 #include "volcal/identify/program/nc_check.h"
 #include "volcal/identify/program/program_header.h"
 #include "volcal/identify/program/tcp_rewriter.h"
+#include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/program_text.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/model/description/errors.h"

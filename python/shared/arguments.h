@@ -8,6 +8,7 @@
 
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/machine.h"
+#include "volcal/model/kinematics/chain.h"
 #include "volcal/python/shared/bindings.h"
 
 namespace volcal::python {

@@ -160,8 +160,8 @@ async function undoRedo({ main: { page } }, fault) {
   await ranked(page);
   let after = await headline(page);
   // Where frames take seconds the number may stand still on its way.
-  for (let look = 0; look < 5 && after.error !== before.error; look += 1) after = await headline(page);
-  if (after.error !== before.error) fault(`redo leads to ${after.error}, not to ${before.error}`);
+  for (const end = Date.now() + 30_000; after.error !== before.error && Date.now() < end;) after = await headline(page);
+  if (after.error !== before.error) fault(`redo leads to ${after.error} (${after.standing}), not to ${before.error} (${before.standing})`);
 }
 
 async function branch(story, fault) {

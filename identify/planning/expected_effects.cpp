@@ -48,9 +48,11 @@ DetectableEffect detectable_effect(const Family& family, const FamilyTest& test,
 
 std::vector<DetectableEffect> expected_detectable(const Campaign& campaign, const FitResult& result,
                                                   int threads) {
+  if (campaign.reading_count() == 0) return {};
   const LinearModel model(campaign, result);
   std::vector<Family> all = families(model);
-  std::erase_if(all, [](const Family& family) { return family.resolution.has_value(); });
+  std::erase_if(all,
+                [](const Family& family) { return family.resolution.has_value() || family.scan.empty(); });
   for (Family& family : all) family.scan = {family.scan[family.scan.size() / 2]};
   const std::vector<NoiseParameters> noise(model.noise_groups().size());
   const Projector projector(model.problem(), model.problem().data, noise, thread_count(threads),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/numeric/threads.h"
@@ -122,9 +123,14 @@ class PlanSearch {
     if (!are_apart(stations)) return std::numeric_limits<double>::infinity();
     const PlanLayout layout = coarse(stations);
     if (layout.runs.empty()) return std::numeric_limits<double>::infinity();
+    return problem_.value(layout, readings_to_judge(layout));
+  }
+
+  /// Where the time carries no reading of all runs, one position of each: runs are dropped later.
+  std::size_t readings_to_judge(const PlanLayout& layout) const {
     const std::size_t affordable = affordable_readings(settings_, layout);
-    const bool whole = sight_.instrument().takes_runs_whole();
-    return problem_.value(layout, whole ? std::min(affordable, layout.readings()) : affordable);
+    if (sight_.instrument().takes_runs_whole()) return std::min(affordable, layout.readings());
+    return affordable > 0 ? affordable : 2 * layout.runs.size();
   }
 
   /// Of several sets of stations, at once.
@@ -262,28 +268,41 @@ class PlanSearch {
         start, first_step(), [this](const auto& sets) { return coarse_values(sets); }, stage, done, 0.2);
   }
 
-  /// Where time is limited, a run less leaves readings for the others.
+  /// A layout without one run, and the criterion that is left.
+  struct Departure {
+    std::pair<std::size_t, std::size_t> run;  ///< station and tool
+    double value = std::numeric_limits<double>::infinity();
+  };
+
+  /// The run that is missed least; every station keeps one. None where nothing can go.
+  std::optional<Departure> least_missed(const std::vector<Eigen::Vector3d>& stations) {
+    const PlanLayout layout = coarse(stations);
+    std::optional<Departure> best;
+    for (const PlanRun& run : layout.runs) {
+      const auto at_station = [&](const PlanRun& each) { return each.station == run.station; };
+      if (std::ranges::count_if(layout.runs, at_station) < 2) continue;
+      dropped_.emplace_back(run.station, run.tool);
+      const Departure without{dropped_.back(), coarse_value(stations)};
+      dropped_.pop_back();
+      if (!best || without.value < best->value) best = without;
+    }
+    return best;
+  }
+
+  /// Where time is limited, a run less leaves readings for the others: as many go as the time does not carry,
+  /// then those that cost hardly anything.
   void drop_runs(const std::vector<Eigen::Vector3d>& stations) {
     if (!settings_.budget.time || sight_.instrument().takes_runs_whole()) return;
+    while (!carries_a_position_of_each(settings_, coarse(stations))) {
+      const std::optional<Departure> going = least_missed(stations);
+      if (!going) fail_one_run_at_every_station();
+      dropped_.push_back(going->run);
+    }
     double value = coarse_value(stations);
-    while (true) {
-      const PlanLayout layout = coarse(stations);
-      double best = std::numeric_limits<double>::infinity();
-      std::pair<std::size_t, std::size_t> worst;
-      for (const PlanRun& run : layout.runs) {
-        const auto at_station = [&](const PlanRun& each) { return each.station == run.station; };
-        if (std::ranges::count_if(layout.runs, at_station) < 2) continue;
-        dropped_.emplace_back(run.station, run.tool);
-        const double without = coarse_value(stations);
-        if (without < best) {
-          best = without;
-          worst = dropped_.back();
-        }
-        dropped_.pop_back();
-      }
-      if (!(best < value * (1.0 + kFewerRuns))) return;
-      dropped_.push_back(worst);
-      value = best;
+    while (const std::optional<Departure> going = least_missed(stations)) {
+      if (!(going->value < value * (1.0 + kFewerRuns))) return;
+      dropped_.push_back(going->run);
+      value = going->value;
     }
   }
 
@@ -382,6 +401,7 @@ class PlanSearch {
     for (int turn = 0; turn < kTurns; ++turn) {
       const double done = 0.55 + 0.13 * turn;
       const std::size_t positions = affordable_readings(settings_, coarse(stations)) / 2;
+      if (positions == 0 && turn > 0) return;  // moved stations see runs that the time does not carry
       const PlanLayout layout = sight_.instrument().takes_runs_whole()
                                     ? whole_runs(stations)
                                     : within_time(pool_layout(stations, positions), positions, done);
@@ -460,6 +480,10 @@ std::size_t affordable_readings(const PlanSettings& settings, const PlanLayout& 
     readings = std::min(readings, static_cast<std::size_t>(std::max(0.0, left / each)));
   }
   return readings / 2 * 2;
+}
+
+bool carries_a_position_of_each(const PlanSettings& settings, const PlanLayout& layout) {
+  return affordable_readings(settings, layout) / 2 >= layout.runs.size();
 }
 
 SearchedPlan search_plan(const PlanSettings& settings, const PlanProblem& problem, const LineOfSight& sight) {

@@ -5,8 +5,8 @@
 /// 1972, 3.3), and as a second start the textbook's corners; both refined by pattern search (Hooke and Jeeves
 /// 1961, J. ACM 8, 212) until steps are below 10 mm. Positions: exchange_design.h over a jittered grid for
 /// every run; of instruments whose runs are taken whole, path_choice.h over every tool at every station. The
-/// two take turns until neither helps. Runs that cost more time than they are worth are left out where time
-/// is limited.
+/// two take turns until neither helps. Where time is limited, runs that it does not carry and those that cost
+/// more of it than they are worth are left out.
 ///
 /// That the arrangement of stations decides what multilateration can know, and that some arrangements know
 /// nothing: Takatsuji, Koseki, Goto et al. 1998, Meas. Sci. Technol. 9, 1357; Takatsuji, Goto, Kirita et al.
@@ -30,6 +30,8 @@ PlanLayout textbook_layout(const PlanSettings& settings, const LineOfSight& sigh
 
 /// Throws InputError: from no place enough can be measured.
 [[noreturn]] void fail_unseen(const LineOfSight& sight);
+/// Throws InputError: the budget does not hold one run at every station.
+[[noreturn]] void fail_one_run_at_every_station();
 
 struct SearchedPlan {
   PlanLayout layout;
@@ -49,5 +51,6 @@ SearchedPlan search_plan(const PlanSettings& settings, const PlanProblem& proble
 
 /// Readings that fit into the time with these runs; the budget's readings without a time.
 std::size_t affordable_readings(const PlanSettings& settings, const PlanLayout& layout);
+bool carries_a_position_of_each(const PlanSettings& settings, const PlanLayout& layout);
 
 }  // namespace volcal

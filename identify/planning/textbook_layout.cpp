@@ -48,13 +48,11 @@ void choose_runs(const PlanSettings& settings, PlanLayout& layout) {
     PlanLayout more = layout;
     for (std::size_t i = 0; i < layout.stations_w.size(); ++i)
       more.runs.push_back({i, tools[(i + turn) % tools.size()], {}});
-    if (affordable_readings(settings, more) / 2 < more.runs.size()) break;
+    if (!carries_a_position_of_each(settings, more)) break;
     layout = std::move(more);
   }
   std::ranges::sort(layout.runs, {}, [](const PlanRun& run) { return std::pair(run.station, run.tool); });
-  if (!layout.runs.empty()) return;
-  throw InputError({}, "readings or time do not suffice for one run at every station",
-                   "give more --readings or --time, fewer --stations, or a smaller --station-min");
+  if (layout.runs.empty()) fail_one_run_at_every_station();
 }
 
 /// An even grid for every run.
@@ -110,6 +108,11 @@ void lay_paths(const PlanSettings& settings, const LineOfSight& sight, PlanLayou
 void fail_unseen(const LineOfSight& sight) {
   const InstrumentWords words = sight.instrument().words();
   throw InputError({}, words.unreached, words.unreached_remedy);
+}
+
+void fail_one_run_at_every_station() {
+  throw InputError({}, "readings or time do not suffice for one run at every station",
+                   "give more --readings or --time, fewer --stations, or a smaller --station-min");
 }
 
 PlanLayout textbook_layout(const PlanSettings& settings, const LineOfSight& sight) {

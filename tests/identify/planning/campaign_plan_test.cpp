@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "volcal/identify/io/plan_writer.h"
+#include "volcal/identify/planning/expected_effects.h"
 #include "volcal/identify/report/text/plan_text.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/description/errors.h"
@@ -271,6 +272,21 @@ TEST(CampaignPlan, KeepsToTheTimeAndDoesNotDependOnThreads) {
       EXPECT_EQ(a.runs[r].positions[k].position, b.runs[r].positions[k].position);
   }
 }
+
+/// The hours carry the stations and all runs but one, and no reading then.
+TEST(CampaignPlan, DropsTheRunsThatTheTimeDoesNotCarry) {
+  PlanSettings settings = small_plan();
+  settings.budget.readings.reset();
+  const std::size_t all = 4 * settings.machine.tools.size();
+  settings.budget.time = 4.0 * settings.costs.station + settings.costs.run * static_cast<double>(all) - 60.0;
+  const SearchedPlan found = search_plan(settings, PlanProblem(settings), LineOfSight(settings));
+  EXPECT_GE(found.layout.runs.size(), 4U);
+  EXPECT_LT(found.layout.runs.size(), all);
+  EXPECT_GE(found.layout.positions(), found.layout.runs.size());
+  EXPECT_LE(duration(found.layout, settings), *settings.budget.time);
+}
+
+TEST(CampaignPlan, NoReadingsShowNoEffect) { EXPECT_THAT(expected_detectable({}, {}, 1), IsEmpty()); }
 
 TEST(CampaignPlan, MinimisesTheErrorThatIsNamed) {
   PlanSettings settings = small_plan();

@@ -36,6 +36,27 @@ bool can_act(const Campaign& campaign, const Effect& effect) {
   return true;
 }
 
+/// Of the noise that the instrument knows.
+void refuse_exact_readings(const PlanSettings& settings) {
+  Setup setup;
+  plan_instrument_of(settings).describe(settings, {"P1"}, setup);
+  const auto of_setup = [&](const char* key) { return setup.noise.number(key).value_or(0.0); };
+  if (setup.repeatability > 0.0 || of_setup("constant") > 0.0 || of_setup("per_metre") > 0.0) return;
+  const std::string per_metre = setup.noise.number("per_metre") ? ", PER_METRE" : "";
+  throw InputError({}, "--noise: the standard deviation of the readings is zero",
+                   "give --noise CONSTANT_um,PER_METRE_um,REPEATABILITY_um with a CONSTANT" + per_metre +
+                       " or REPEATABILITY above zero");
+}
+
+void refuse_tools_named_twice(const PlanSettings& settings) {
+  std::set<std::size_t> named;
+  for (const std::size_t tool : settings.budget.tools) {
+    if (named.insert(tool).second) continue;
+    throw InputError({}, "--tools names " + settings.machine.tools[tool].name + " twice",
+                     "give every tool once");
+  }
+}
+
 }  // namespace
 
 std::optional<Finding> hold_effects_unseen(const Campaign& planned, ModelSpec& model) {
@@ -103,7 +124,9 @@ void check_plan_settings(const PlanSettings& settings) {
     fail("--tool-count asks for more tools than there are",
          "the machine file and --tools leave " + std::to_string(tools_of(settings).size()));
   }
+  refuse_tools_named_twice(settings);
   plan_instrument_of(settings).check(settings);
+  refuse_exact_readings(settings);
 }
 
 }  // namespace volcal

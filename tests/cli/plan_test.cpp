@@ -156,6 +156,9 @@ TEST(Plan, RefusesBadInput) {
   refused(kMachine, "neither readings nor time are limited");
   refused(kMachine + " --readings 100 --tools longest", "no tool longest");
   refused(kMachine + " --readings 100 --tool-count 9", "more tools than there are");
+  refused(kMachine + " --readings 100 --tools short,side_x,short", "--tools names short twice");
+  refused(kMachine + " --readings 100 --noise 0,0,0",
+          "--noise: the standard deviation of the readings is zero");
   refused(kMachine + " --readings 100 --minimise EXQ", "is not an error of this machine");
   refused(kMachine + " --readings 100 --minimise separate:reversal:EXX", "cannot be separated");
   refused(kMachine + " --readings 100 --minimise separate:reversal:EXX,nonsense:Y", "not a kind of effect");

@@ -360,6 +360,12 @@ TEST(CampaignPlan, RefusesWhatMakesNoPlan) {
   settings.budget.tool_count = 7;
   EXPECT_THROW(plan_campaign(settings, nullptr), InputError);
   settings = small_plan();
+  settings.budget.tools = {0, 0};
+  EXPECT_THROW(check_plan_settings(settings), InputError);
+  settings = small_plan();
+  settings.noise = {0.0, 0.0, 0.0, 1e-6};
+  EXPECT_THROW(check_plan_settings(settings), InputError);
+  settings = small_plan();
   settings.surroundings.stations_w =
       Eigen::AlignedBox3d(Eigen::Vector3d(0.2, 0.2, 0.0), Eigen::Vector3d(0.3, 0.3, 0.1));
   EXPECT_THROW(plan_campaign(settings, nullptr), InputError);

@@ -9,11 +9,11 @@ namespace volcal::cli {
 namespace {
 
 volatile sig_atomic_t interrupts = 0;
+std::string_view words_of_watch;
 
 void note_interrupt(int /*signal*/) {
-  constexpr std::string_view kWords = "\nending after this block of draws; Ctrl-C again ends at once\n";
   interrupts = 1;
-  static_cast<void>(!::write(STDERR_FILENO, kWords.data(), kWords.size()));
+  static_cast<void>(!::write(STDERR_FILENO, words_of_watch.data(), words_of_watch.size()));
 }
 
 void set_handler(void (*handler)(int)) {
@@ -25,8 +25,9 @@ void set_handler(void (*handler)(int)) {
 
 }  // namespace
 
-InterruptWatch::InterruptWatch() {
+InterruptWatch::InterruptWatch(std::string_view words) {
   interrupts = 0;
+  words_of_watch = words;
   set_handler(&note_interrupt);
 }
 

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/numeric/interruption.h"
 #include "volcal/identify/planning/expected_effects.h"
 #include "volcal/identify/planning/measured_positions.h"
 #include "volcal/identify/planning/plan_options.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -57,6 +60,22 @@ PlanSettings with_share(PlanSettings settings, double from, double share) {
     whole(stage, from + share * done);
   };
   return settings;
+}
+
+/// What one setup more would bring, where an error is not visible.
+void find_options(const PlanSettings& settings, CampaignPlan& plan) {
+  std::atomic<double> done{0.0};
+  PlanSettings adding = settings;
+  adding.existing = &plan.plan.campaign;
+  adding.progress = [&done](const std::string& /*stage*/, double share) { done = share; };
+  try {
+    const Interruption guard([&] {
+      if (settings.progress) settings.progress(kLookingForOptions, 0.9 + 0.1 * done);
+    });
+    plan.options = setup_options(adding, plan.plan).options;
+  } catch (const OptionsNotWanted&) {
+    plan.findings.push_back({FindingCode::PlanOptionsLeft});
+  }
 }
 
 void tell(const PlanSettings& settings, const std::string& stage, double done) {
@@ -141,12 +160,7 @@ CampaignPlan plan_campaign(const PlanSettings& given_settings, const Campaign* g
   plan.textbook.duration = duration(textbook, settings);
   if (settings.apart_from == nullptr && are_apart(textbook.stations_w)) keep_the_surer(textbook, plan);
   if (given != nullptr) plan.given = expected_campaign("given", *given, settings, true);
-  if (!plan.plan.invisible().empty()) {
-    tell(settings, "what would make errors visible", 0.9);
-    PlanSettings adding = settings;
-    adding.existing = &plan.plan.campaign;
-    plan.options = setup_options(adding, plan.plan).options;
-  }
+  if (!plan.plan.invisible().empty()) find_options(settings, plan);
   tell(settings, "done", 1.0);
   return plan;
 }
@@ -165,7 +179,10 @@ CampaignPlan extend_campaign(const PlanSettings& settings) {
     PlanSettings adding = with_share(plan.settings, 0.9 * setup / setups, 0.9 / setups);
     adding.existing = &reached;
     adding.budget.readings = static_cast<int>(readings);
-    const SetupOptions found = setup_options(adding, now);
+    tell(adding, "setups", 0.0);
+    PlanSettings silent = adding;
+    silent.progress = nullptr;
+    const SetupOptions found = setup_options(silent, now);
     if (found.options.empty()) break;
     if (plan.options.empty()) plan.options = found.options;
     plan.settings.machine = found.machine;

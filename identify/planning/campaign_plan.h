@@ -63,6 +63,9 @@ struct CampaignPlan {
   std::vector<Finding> notes;             ///< on the files of the given campaign (Campaign::notes)
 };
 
+/// Stage of the progress in which OptionsNotWanted may be thrown.
+inline constexpr const char* kLookingForOptions = "what would make errors visible";
+
 /// The plan that the search found is the better one on the small problem that it works on. Where figures of
 /// the whole campaigns say otherwise, the textbook's layout, of the same tools and within the same budget,
 /// becomes the plan: where that alone determines every error, which a plan for one error or for two effects

@@ -1,7 +1,9 @@
 #include "volcal/identify/planning/plan_options.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <set>
@@ -30,6 +32,7 @@ constexpr std::size_t kLeastSeen = 8;
 constexpr double kFinerPool = 6.0;
 constexpr int kOptionSites = 5;
 constexpr std::size_t kMostOptions = 12;
+constexpr double kShareOfSites = 0.5;  // of the search's time
 
 FindingValue in_mm(const Eigen::Vector3d& place) {
   std::vector<FindingNumber> numbers;
@@ -69,7 +72,7 @@ class OptionSearch {
  public:
   OptionSearch(PlanSettings settings, const ExpectedCampaign& now)
       : settings_(std::move(settings)), now_(now) {
-    settings_.progress = nullptr;
+    progress_ = std::exchange(settings_.progress, nullptr);
     own_machine_ = settings_.machine;
     own_hypothetical_ = settings_.hypothetical_tools;
     positions_ = static_cast<std::size_t>(settings_.budget.readings.value_or(kUsualReadings)) / 2;
@@ -91,8 +94,11 @@ class OptionSearch {
     std::vector<PlanLayout> layouts = at_known_places(sight);
     for (PlanLayout& layout : at_new_places(sight, problem)) layouts.push_back(std::move(layout));
     std::vector<Judged> judged(layouts.size());
-    run_parallel(layouts.size(), thread_count(settings_.threads),
-                 [&](std::size_t i) { judged[i] = judge(layouts[i], problem); });
+    std::atomic<std::size_t> finished{0};
+    run_parallel(layouts.size(), thread_count(settings_.threads), [&](std::size_t i) {
+      judged[i] = judge(layouts[i], problem);
+      tell(kShareOfSites + (1.0 - kShareOfSites) * share_of(++finished, layouts.size()));
+    });
     std::ranges::stable_sort(judged, {}, [](const Judged& each) {
       return std::pair(each.option.still_invisible.size(), each.order);
     });
@@ -100,6 +106,15 @@ class OptionSearch {
   }
 
  private:
+  /// From any thread.
+  void tell(double done) const {
+    if (progress_) progress_("options", done);
+  }
+
+  static double share_of(std::size_t part, std::size_t whole) {
+    return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(1, whole));
+  }
+
   void imagine_tools() {
     const LineOfSight sight(settings_);
     const Eigen::Vector3d spindle_w = sight.spindle_w();
@@ -230,6 +245,7 @@ class OptionSearch {
         all[i] = layout_of({new_name(), sites[i]}, tool, sight);
         if (!all[i].runs.empty()) values[i] = problem.value(all[i]);
       });
+      tell(kShareOfSites * share_of(tool + 1, settings_.machine.tools.size()));
       if (values.empty()) continue;
       const auto best = static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
       if (std::isfinite(values[best])) layouts.push_back(std::move(all[best]));
@@ -284,6 +300,7 @@ class OptionSearch {
   }
 
   PlanSettings settings_;
+  std::function<void(const std::string& stage, double done)> progress_;
   const ExpectedCampaign& now_;
   Machine own_machine_;
   std::size_t own_hypothetical_ = 0;

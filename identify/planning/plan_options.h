@@ -18,7 +18,8 @@ struct SetupOptions {
 /// `settings.existing` is what there is, `now` what it tells. An error that it tells stays visible in every
 /// option: the rank analysis of more readings may have finer functions and a longer stretch of an axis, over
 /// which it asks more, but they take nothing away of what is known. An option is better the fewer errors it
-/// leaves invisible, then the smaller the target. The twelve best are listed.
+/// leaves invisible, then the smaller the target. The twelve best are listed. `settings.progress` is called
+/// from any thread.
 SetupOptions setup_options(const PlanSettings& settings, const ExpectedCampaign& now);
 
 /// The positions of a layout's runs chosen anew among a fine grid, as many as there are; runs that are taken

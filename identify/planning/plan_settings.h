@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -106,6 +107,9 @@ struct PlanSettings {
   int threads = 0;         ///< 0 = all; results do not depend on it
   std::function<void(const std::string& stage, double done)> progress;
 };
+
+/// Thrown by `progress` while it is looked for what one setup more would bring: the plan is left without.
+struct OptionsNotWanted : std::exception {};
 
 /// A model without the errors of linear axes and their squareness.
 ModelSpec with_known_linear_axes(ModelSpec model, const Machine& machine);

@@ -96,6 +96,10 @@ std::string effects_known(const Finding& finding) {
          " and that changes, a fit identifies it anew.";
 }
 
+std::string options_left(const Finding& /*finding*/) {
+  return "What one setup more would bring is not in this plan: the search for it was interrupted.";
+}
+
 }  // namespace
 
 std::span<const SentenceMaker> measurement_sentences() {
@@ -105,6 +109,7 @@ std::span<const SentenceMaker> measurement_sentences() {
       {FindingCode::MeasurementShows, shows},
       {FindingCode::PlanSetupMore, setup_more},
       {FindingCode::PlanEffectsKnown, effects_known},
+      {FindingCode::PlanOptionsLeft, options_left},
   });
   return kSentences;
 }

@@ -76,6 +76,7 @@ constexpr auto kFindingCodes = [] {
       {MeasurementShows, "measurement.shows", Severity::Note},
       {PlanSetupMore, "plan.setup-more", Severity::Note},
       {PlanEffectsKnown, "plan.effects-known", Severity::Note},
+      {PlanOptionsLeft, "plan.options-left", Severity::Note},
       {StandardsRemovedReadingsUsed, "standards.removed-readings-used", Severity::Note},
       {StandardsLinesOwnZero, "standards.lines-own-zero", Severity::Note},
       {StandardsTargetsSpread, "standards.targets-spread", Severity::Note},

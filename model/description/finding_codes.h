@@ -72,6 +72,7 @@ enum class FindingCode : std::uint8_t {
   MeasurementShows,
   PlanSetupMore,
   PlanEffectsKnown,
+  PlanOptionsLeft,
   StandardsRemovedReadingsUsed,
   StandardsLinesOwnZero,
   StandardsTargetsSpread,

@@ -145,7 +145,7 @@ End draw_all(const MonteCarloArguments& arguments, ProgressBar& bar, MonteCarloS
   const std::string checkpoint = checkpoint_path(arguments);
   const bool has_a_limit = arguments.options.draws == 0 && arguments.minutes > 0.0;
   DrawProgress progress(bar, study);
-  const InterruptWatch interrupt;
+  const InterruptWatch interrupt("\nending after this block of draws; Ctrl-C again ends at once\n");
   const Clock::time_point start = Clock::now();
   Clock::time_point kept = start;
   if (is_first(arguments)) progress.update(study);

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/interrupt_watch.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
@@ -212,6 +214,41 @@ void write_plan(const PlanArguments& arguments, const CampaignPlan& plan, const 
   folder.commit();
 }
 
+/// Ctrl-C ends the program, but for the search for options: then the plan is there and is kept.
+class PlanProgress {
+ public:
+  explicit PlanProgress(ProgressBar& bar) : bar_(bar) {}
+
+  void update(const std::string& stage, double done) {
+    if (stage != kLookingForOptions) {
+      watch_.reset();
+      return bar_.update(stage, done);
+    }
+    if (!watch_) {
+      watch_.emplace("\nending with the plan that is found; Ctrl-C again ends at once\n");
+      start_ = Clock::now();
+      before_ = done;
+    }
+    if (watch_->was_asked_for()) throw OptionsNotWanted();
+    bar_.update(stage + time_left(done), done);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// ", 12 s left"; empty before anything is done.
+  std::string time_left(double done) const {
+    if (!(done > before_)) return "";
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    return fmt::format(", {:.0f} s left", seconds * (1.0 - done) / (done - before_));
+  }
+
+  ProgressBar& bar_;
+  std::optional<InterruptWatch> watch_;
+  Clock::time_point start_;
+  double before_ = 0.0;
+};
+
 int run_plan(const PlanArguments& arguments, const CLI::App& app) {
   refuse_other_options(app, arguments.settings.instrument);
   if (!arguments.output.empty()) {
@@ -224,7 +261,8 @@ int run_plan(const PlanArguments& arguments, const CLI::App& app) {
   const std::optional<Campaign> with = given_campaign(arguments, machine);
   PlanSettings settings = settings_of(arguments, machine, with);
   ProgressBar bar("plan");
-  settings.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
+  PlanProgress progress(bar);
+  settings.progress = [&progress](const std::string& stage, double done) { progress.update(stage, done); };
   CampaignPlan plan =
       arguments.extend ? extend_campaign(settings) : plan_campaign(settings, with ? &*with : nullptr);
   if (with) plan.notes = with->notes;

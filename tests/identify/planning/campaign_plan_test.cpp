@@ -288,6 +288,21 @@ TEST(CampaignPlan, DropsTheRunsThatTheTimeDoesNotCarry) {
 
 TEST(CampaignPlan, NoReadingsShowNoEffect) { EXPECT_THAT(expected_detectable({}, {}, 1), IsEmpty()); }
 
+/// One tool on the spindle axis leaves a roll invisible, so that options are looked for.
+TEST(CampaignPlan, IsKeptWhereItsOptionsAreNotWanted) {
+  PlanSettings settings = small_plan();
+  settings.machine.tools = {{"short", {0.0, 0.0, -0.15}, 0.0}};
+  settings.progress = [](const std::string& stage, double /*done*/) {
+    if (stage == kLookingForOptions) throw OptionsNotWanted();
+  };
+  const CampaignPlan plan = plan_campaign(settings, nullptr);
+  EXPECT_GT(plan.plan.campaign.reading_count(), 0U);
+  EXPECT_THAT(names_of(plan.plan.invisible()), Contains("ECZ"));
+  EXPECT_THAT(plan.options, IsEmpty());
+  ASSERT_EQ(plan.findings.size(), 1U);
+  EXPECT_EQ(plan.findings.front().code, FindingCode::PlanOptionsLeft);
+}
+
 TEST(CampaignPlan, MinimisesTheErrorThatIsNamed) {
   PlanSettings settings = small_plan();
   settings.target = PlanTarget::Symbol;

@@ -231,6 +231,8 @@ std::vector<WordedFinding> examples_of_criticism() {
       {{FindingCode::PlanEffectsKnown, {{"effects", Texts{"station drift P9 x"}}}},
        "The plan takes as known, as the model states it: station drift P9 x. It belongs to setups of the "
        "campaign in which it was found."},
+      {{FindingCode::PlanOptionsLeft},
+       "What one setup more would bring is not in this plan: the search for it was interrupted."},
   };
 }
 

@@ -100,7 +100,7 @@ PlanJson errors_json(const ExpectedCampaign& campaign) {
     PlanJson json = {{"symbol", error.symbol.name()},
                      {"visible", error.visible},
                      {"visible_fraction", error.visible_fraction},
-                     {"effective_parameters", error.effective_parameters}};
+                     {"effective_parameters", in_unit(error.effective_parameters, 1.0)}};
     json["unit"] = unit.name;
     json["u"] = error.visible ? in_unit(error.u_rms, unit.si_per_unit) : PlanJson(nullptr);
     if (!error.visible) {

@@ -84,7 +84,7 @@ struct Observability {
   bool visible = true;
   double visible_fraction = 0.0;  ///< share of the error's signal that no other parameter can imitate, 0..1
   double u_rms = 0.0;             ///< root mean square standard uncertainty over the measured travel, SI
-  double effective_parameters = 0.0;
+  double effective_parameters = 0.0;  ///< that the readings determine; NaN when not visible
   std::optional<Finding> cause = {};  ///< when not visible: why, and what to measure ("rank.not-visible...")
 };
 
@@ -103,8 +103,8 @@ struct FunctionSummary {
   int intervals = 0;
   bool smoothed = false;  ///< smoothing prior in force (knots = "auto")
   std::string prior;      ///< kind that its spectrum is about (function_prior.h); empty = not smoothed
-  double correlation_length = 0.0;  ///< of the prior, m or rad; 0 = not smoothed
-  double effective_parameters = 0.0;
+  double correlation_length = 0.0;    ///< of the prior, m or rad; 0 = not smoothed
+  double effective_parameters = 0.0;  ///< that the readings determine; NaN when the error is not visible
   /// Range of positions with readings, m or rad; the travel where a periodic function was measured over three
   /// quarters of a turn.
   double measured_min = 0.0;

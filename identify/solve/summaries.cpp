@@ -80,10 +80,14 @@ double mean_uncertainty(const Campaign& campaign, const FitResult& result, const
 
 void complete_observability(const Campaign& campaign, FitResult& result) {
   for (Observability& figure : result.rank.errors) {
-    if (!figure.symbol.motion()) figure.effective_parameters = figure.visible ? 1.0 : 0.0;
-    for (const FunctionSummary& function : result.functions) {
-      if (figure.symbol == function.symbol) figure.effective_parameters = function.effective_parameters;
+    if (!figure.symbol.motion()) figure.effective_parameters = 1.0;
+    for (FunctionSummary& function : result.functions) {
+      if (figure.symbol != function.symbol) continue;
+      // The smoothing of what is not visible is set aside, and nothing says what the readings carry of it.
+      if (!figure.visible) function.effective_parameters = std::nan("");
+      figure.effective_parameters = function.effective_parameters;
     }
+    if (!figure.visible) figure.effective_parameters = std::nan("");
     if (figure.visible) figure.u_rms = mean_uncertainty(campaign, result, figure.symbol);
   }
 }

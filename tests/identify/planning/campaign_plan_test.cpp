@@ -301,6 +301,9 @@ TEST(CampaignPlan, IsKeptWhereItsOptionsAreNotWanted) {
   EXPECT_THAT(plan.options, IsEmpty());
   ASSERT_EQ(plan.findings.size(), 1U);
   EXPECT_EQ(plan.findings.front().code, FindingCode::PlanOptionsLeft);
+  // What is not visible has no number of parameters, of a function no more than of U.
+  for (const Observability& error : plan.plan.result.rank.errors)
+    EXPECT_EQ(std::isnan(error.effective_parameters), !error.visible) << error.symbol.name();
 }
 
 TEST(CampaignPlan, MinimisesTheErrorThatIsNamed) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/solve/evaluate.h"
@@ -307,6 +308,9 @@ TEST(Fit, AnInvisibleFunctionIsNotMadeKnownBySmoothing) {
   const FitResult result = fit(sim::simulate(study).campaign, ModelSpec{});
   ASSERT_FALSE(figure_of(result, "ECZ").visible);
   ASSERT_TRUE(figure_of(result, "EXX").visible);
+  for (const FunctionSummary& function : result.functions)
+    EXPECT_EQ(std::isnan(function.effective_parameters), !figure_of(result, function.symbol.name()).visible);
+  EXPECT_TRUE(std::isnan(figure_of(result, "ECZ").effective_parameters));
   for (const ErrorTableRow& row : error_table(result)) {
     if (row.symbol.name() == "ECZ" && std::abs(row.position - result.machine.axis(AxisName::Z).home) > 0.1) {
       EXPECT_GT(row.u, 50e-6) << row.position;

@@ -28,8 +28,13 @@ PlanJson in_unit(double si, double unit) {
   return std::isfinite(si) ? PlanJson(si / unit) : PlanJson(nullptr);
 }
 
+/// What is finer is rounding of the search.
+double whole_nanometres(double metres) { return std::round(metres * 1e9); }
+
 PlanJson millimetres(const Eigen::Vector3d& place) {
-  return {place.x() / kMetrePerMillimetre, place.y() / kMetrePerMillimetre, place.z() / kMetrePerMillimetre};
+  PlanJson json = PlanJson::array();
+  for (const double each : place) json.push_back(whole_nanometres(each) / 1e6);
+  return json;
 }
 
 const char* name_of(PlanTarget target) {
@@ -147,9 +152,10 @@ PlanJson campaign_json(const ExpectedCampaign& campaign) {
 }
 
 std::string in_mm(const Eigen::Vector3d& place) {
-  return fmt::format("[{}, {}, {}]", edge_number(place.x(), kMetrePerMillimetre),
-                     edge_number(place.y(), kMetrePerMillimetre),
-                     edge_number(place.z(), kMetrePerMillimetre));
+  std::string text;
+  for (const double each : place)
+    text += (text.empty() ? "" : ", ") + edge_number(whole_nanometres(each) / 1e9, kMetrePerMillimetre);
+  return "[" + text + "]";
 }
 
 constexpr const char* kKnownLinearAxes =

@@ -108,6 +108,8 @@ std::string plan_head(const CampaignPlan& plan) {
   if (settings.bar.length > 0.0) text += " " + bar_words(settings.bar);
   if (budget.readings) text += fmt::format(", {} readings", count_number(*budget.readings));
   if (budget.time) text += fmt::format(", {} h", hours(*budget.time));
+  if (const std::size_t values = values_of_a_reading(settings); values > 1)
+    text += fmt::format("; a reading is {} values, which the campaigns below count one by one", values);
   text += "\n" + assumed_of_axes(plan) + verification_words(plan);
   return text;
 }
@@ -262,6 +264,11 @@ std::string verdict(const CampaignPlan& plan) {
 }
 
 }  // namespace
+
+std::size_t values_of_a_reading(const PlanSettings& settings) {
+  const Eigen::Vector3d place = Eigen::Vector3d::Zero(), point = Eigen::Vector3d::UnitX();
+  return plan_instrument_of(settings).nominal_reading(place, point).size();
+}
 
 std::string target_words(const PlanSettings& settings) {
   switch (settings.target) {

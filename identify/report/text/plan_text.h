@@ -1,6 +1,7 @@
 #pragma once
 /// A campaign plan for the terminal.
 
+#include <cstddef>
 #include <string>
 
 #include "volcal/identify/planning/campaign_plan.h"
@@ -11,6 +12,9 @@ namespace volcal {
 /// given campaign; U and observability of every error; smallest detectable effects, one line a kind; what is
 /// not visible and what one setup more would bring.
 std::string plan_text(const CampaignPlan& plan);
+
+/// Lengths and angles that the instrument reads at once.
+std::size_t values_of_a_reading(const PlanSettings& settings);
 
 /// "volumetric uncertainty (RMS of the vector)", "largest table value", "EXX", "reversal EXX from ..."
 std::string target_words(const PlanSettings& settings);

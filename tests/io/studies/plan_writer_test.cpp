@@ -1,5 +1,6 @@
 #include "volcal/identify/io/plan_writer.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include "volcal/identify/planning/line_of_sight.h"
 #include "volcal/identify/planning/plan_search.h"
 #include "volcal/identify/planning/registry.h"
+#include "volcal/identify/report/text/plan_text.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/studies/files/study_reader.h"
 
@@ -54,6 +56,33 @@ TEST(StudyOfAPlan, MeasuresThePlanOfEveryInstrument) {
     folder.commit();
     expect_measured(plan.plan.campaign, sim::simulate(read_study(target + "/study.toml")).campaign);
   }
+}
+
+/// 45 mm less 7e-14 mm is what a search leaves of 45 mm.
+TEST(StudyOfAPlan, StatesPlacesWithoutTheRoundingOfTheSearch) {
+  PlanSettings settings;
+  settings.machine = sim::reference_machines().front();
+  settings.budget.stations = 1;
+  settings.budget.readings = 60;
+  CampaignPlan plan;
+  plan.settings = settings;
+  plan.searched.layout = textbook_layout(settings, LineOfSight(settings));
+  plan.searched.layout.stations_w = {Eigen::Vector3d(0.04499999999999993, 0.532, -0.529)};
+  plan.plan.campaign = campaign_of(plan.searched.layout, settings);
+  EXPECT_THAT(plan_study_toml(plan), ::testing::HasSubstr("position_mm = [45, 532, -529]\n"));
+  EXPECT_THAT(plan_json(plan), ::testing::ContainsRegex("45(\\.0)?,\\s+532(\\.0)?,\\s+-529(\\.0)?\\s"));
+}
+
+TEST(PlanText, SaysHowManyValuesAReadingIs) {
+  PlanSettings settings;
+  settings.machine = testing_support::five_axis_machine("w C' A' b X Y Z t");
+  const auto values = [&](const char* instrument) {
+    settings.instrument = instrument;
+    return values_of_a_reading(settings);
+  };
+  EXPECT_EQ(values("laser-tracer"), 1U);
+  EXPECT_EQ(values("laser-tracker"), 3U) << "length, azimuth, elevation";
+  EXPECT_EQ(values("r-test"), 3U) << "x, y, z of the sphere";
 }
 
 }  // namespace

@@ -131,6 +131,7 @@ Json plan_layout_page(const PlanPageInput& input) {
           {"heading", words.heading},
           {"region", words.region},
           {"checked", words.checked},
+          {"values_a_reading", values_of_a_reading(plan.settings)},
           {"target", target_words(plan.settings)},
           {"ratio", rounded(target_ratio(plan), 4)},
           {"against", compared_with(plan).name},

@@ -124,6 +124,7 @@ export function renderPlanLayout(body, data) {
   const messages = [...data.invisible, ...data.messages];
   if (messages.length > 0) body.append(el('ul', { class: 'messages' }, messages.map((text) => el('li', {}, text))));
   body.append(figures(data.campaigns));
+  if (data.values_a_reading > 1) body.append(note(`A reading is ${data.values_a_reading} values, which campaigns count one by one.`));
   const node = el('div', { class: 'plot scene' });
   const stations = el('div', {});
   const redraws = [addPlot(node, () => picture(data, view.campaign, node))];

@@ -103,4 +103,19 @@ double StudySums::standard_error(std::size_t quantity, Figure figure) const {
          std::sqrt(static_cast<double>(sequences_));
 }
 
+double StudySums::end_error_by_normal_theory(std::size_t quantity) const {
+  return kEndScatter * std::max(1.0, deviation(quantity)) / std::sqrt(static_cast<double>(draws()));
+}
+
+double StudySums::end_error(std::size_t quantity) const {
+  if (sequences_ < 2) return end_error_by_normal_theory(quantity);
+  return std::max(standard_error(quantity, Figure::Low), standard_error(quantity, Figure::High));
+}
+
+double StudySums::largest_end_error(std::size_t quantity) const {
+  constexpr std::uint64_t kManySequences = 10;
+  if (sequences_ >= kManySequences) return end_error(quantity);
+  return std::max(end_error(quantity), end_error_by_normal_theory(quantity));
+}
+
 }  // namespace volcal

@@ -59,6 +59,8 @@ class StudySums {
  public:
   /// Draws of a sequence: M of 7.9.4 a), at least 100 / (1 - p) and 10^4.
   static constexpr std::uint64_t kSequence = 10000;
+  /// sqrt(p (1 - p)) / density of a normal end at p = 0.025
+  static constexpr double kEndScatter = 2.67;
 
   explicit StudySums(std::size_t quantities);
   void add(const Moments& moments, const Histograms& counts);
@@ -73,6 +75,11 @@ class StudySums {
   /// Standard deviation of a figure over all draws, from its scatter over the sequences; infinite for fewer
   /// than two.
   double standard_error(std::size_t quantity, Figure figure) const;
+  /// The larger of the two ends'; for fewer than two sequences by normal theory, where draws scatter as
+  /// linear propagation says at least: a few say little of their own scatter.
+  double end_error(std::size_t quantity) const;
+  /// The same, and not below normal theory for a few sequences, whose scatter may be small by chance.
+  double largest_end_error(std::size_t quantity) const;
 
   /// The state in plain arrays: what a checkpoint holds.
   template <class Visit>
@@ -92,6 +99,7 @@ class StudySums {
 
  private:
   void close_sequence();
+  double end_error_by_normal_theory(std::size_t quantity) const;
 
   Moments total_;
   Histograms counts_;

@@ -22,8 +22,7 @@
 namespace volcal {
 namespace {
 
-constexpr double kShareOfTolerance = 0.2;  // that a path may differ from refits: as 8.2 asks of Monte Carlo
-constexpr double kEndScatter = 2.67;       // sqrt(p (1 - p)) / density of a normal end at p = 0.025
+constexpr double kMostForecast = 1e15;  // draws: nobody makes more
 
 /// Draws between two looks at the sums, and of them those that one thread makes at a time.
 struct BlockSize {
@@ -152,13 +151,16 @@ class MonteCarloStudy::Work {
   }
 
   std::uint64_t expected_draws() const {
-    if (options_.draws > 0) return options_.draws;
+    return options_.draws > 0 ? options_.draws : std::min(options_.most_draws, draws_to_settle());
+  }
+
+  /// By the scatter so far, of the first by normal theory; as many as that takes.
+  std::uint64_t draws_to_settle() const {
+    if (sums_.sequences() < 2) return to_settle_by_normal_theory();
     double worst = 0.0;
-    if (sums_.sequences() < 2) return expected_by_normal_theory();
     for (std::size_t i = 0; i < set_.items.size(); ++i)
       worst = std::max(worst, scatter(i) / tolerance_of_draws(i));
-    const double draws = static_cast<double>(sums_.draws()) * std::max(1.0, worst * worst);
-    return whole_sequences(draws);
+    return whole_sequences(static_cast<double>(sums_.draws()) * std::max(1.0, worst * worst));
   }
 
   MonteCarloResult result() const {
@@ -171,7 +173,8 @@ class MonteCarloStudy::Work {
     result.digits = options_.digits;
     result.adaptive = options_.draws == 0;
     result.settled = sums_.sequences() >= 2 && settled();
-    result.would_settle = result.adaptive ? expected_draws() : 0;
+    result.would_settle = result.adaptive ? draws_to_settle() : 0;
+    result.most_draws = result.adaptive ? options_.most_draws : 0;
     result.check = check_;
     result.steps = tally_.steps;
     result.refitted = tally_.refitted;
@@ -257,8 +260,8 @@ class MonteCarloStudy::Work {
   BlockShare draw_share() {
     const BlockSize size = block_size(path_);
     const std::uint64_t of_batch = size.batch;
-    std::uint64_t count = size.block;
-    if (options_.draws > 0) count = std::min(count, options_.draws - sums_.draws());
+    std::uint64_t count = size.block - sums_.draws() % size.block;
+    count = std::min(count, (options_.draws > 0 ? options_.draws : options_.most_draws) - sums_.draws());
     const auto batches = static_cast<std::size_t>((count + of_batch - 1) / of_batch);
     BlockShare share{std::vector<Moments>(batches, Moments(set_.items.size())), nullptr, {}};
     std::mutex counting;
@@ -381,14 +384,6 @@ class MonteCarloStudy::Work {
     return check_.chord.largest_share <= kShareOfTolerance ? DrawPath::Chord : DrawPath::Refit;
   }
 
-  /// Standard error of a figure in units of t; by normal theory for fewer than two sequences.
-  double standard_error(std::size_t i, Figure figure) const {
-    if (sums_.sequences() >= 2) return sums_.standard_error(i, figure);
-    const double deviation = sums_.deviation(i), root = std::sqrt(static_cast<double>(sums_.draws()));
-    if (figure == Figure::Mean) return deviation / root;
-    return deviation * (figure == Figure::Deviation ? std::sqrt(0.5) : kEndScatter) / root;
-  }
-
   /// 2 s of the least settled figure, SI.
   double scatter(std::size_t i) const {
     double worst = 0.0;
@@ -418,17 +413,16 @@ class MonteCarloStudy::Work {
 
   static constexpr std::uint64_t kFewestDraws = 2 * StudySums::kSequence;
 
-  std::uint64_t whole_sequences(double draws) const {
-    const double most = static_cast<double>(options_.most_draws);
+  static std::uint64_t whole_sequences(double draws) {
     const auto sequences = static_cast<std::uint64_t>(
-        std::ceil(std::min(draws, most) / static_cast<double>(StudySums::kSequence)));
-    return std::min(options_.most_draws, std::max(kFewestDraws, sequences * StudySums::kSequence));
+        std::ceil(std::min(draws, kMostForecast) / static_cast<double>(StudySums::kSequence)));
+    return std::max(kFewestDraws, sequences * StudySums::kSequence);
   }
 
-  std::uint64_t expected_by_normal_theory() const {
+  std::uint64_t to_settle_by_normal_theory() const {
     double worst = 0.0;
     for (Eigen::Index i = 0; i < tolerance_.size(); ++i)
-      worst = std::max(worst, 2.0 * kEndScatter * projection_.unit()[i] / tolerance_[i]);
+      worst = std::max(worst, 2.0 * StudySums::kEndScatter * projection_.unit()[i] / tolerance_[i]);
     return whole_sequences(worst * worst);
   }
 
@@ -443,10 +437,11 @@ class MonteCarloStudy::Work {
   }
 
   /// Draws that no path solved could hide any difference.
-  LinearVerdict verdict(const QuantityResult& value) const {
+  LinearVerdict verdict(const QuantityResult& value, double surely_different) const {
+    if (sums_.draws() < kFewestForEnds) return LinearVerdict::Undecided;
     if (tally_.not_converged == 0 && value.difference <= value.tolerance) return LinearVerdict::Validated;
-    return value.difference <= value.tolerance + kScatter * value.end_error ? LinearVerdict::Undecided
-                                                                            : LinearVerdict::NotValidated;
+    return value.difference <= value.tolerance + surely_different ? LinearVerdict::Undecided
+                                                                  : LinearVerdict::NotValidated;
   }
 
   QuantityResult quantity_result(std::size_t i) const {
@@ -456,7 +451,7 @@ class MonteCarloStudy::Work {
     result.quantity = set_.items[i];
     result.u_linear = projection_.u_linear()[index];
     result.bias_linear = projection_.bias_linear()[index];
-    result.u = sums_.deviation(i) * unit;
+    result.u = sums_.draws() < 2 ? std::nan("") : sums_.deviation(i) * unit;
     result.bias = sums_.mean(i) * unit;
     result.bias_error = result.u / std::sqrt(static_cast<double>(sums_.draws()));
     const double reach = normal_quantile(0.5 + 0.5 * kCoverageProbability) * result.u_linear;
@@ -467,9 +462,9 @@ class MonteCarloStudy::Work {
     result.tolerance = tolerance_of_draws(i);
     result.difference = std::max(std::abs(result.linear.low - result.symmetric.low),
                                  std::abs(result.linear.high - result.symmetric.high));
-    result.end_error = unit * std::max(standard_error(i, Figure::Low), standard_error(i, Figure::High));
+    result.end_error = unit * sums_.end_error(i);
     result.scatter = scatter(i);
-    result.verdict = verdict(result);
+    result.verdict = verdict(result, kScatter * unit * sums_.largest_end_error(i));
     return result;
   }
 

@@ -52,6 +52,10 @@ struct MonteCarloOptions {
 /// controllers.
 inline constexpr double kPracticalTolerance = 5e-9;
 
+/// Share of its numerical tolerance by which a value of a path may differ from refits: as 8.2 asks of Monte
+/// Carlo.
+inline constexpr double kShareOfTolerance = 0.2;
+
 /// How far a path is from refits of the same draws.
 struct PathCheck {
   int draws = 0;
@@ -71,10 +75,12 @@ struct RefitCheck {
 
 /// Clause 8: linear propagation is validated when the ends of its interval are within the numerical tolerance
 /// of u of those of Monte Carlo. Undecided: the difference exceeds the tolerance by less than the scatter of
-/// the ends can explain (kScatter of their standard errors, which allows for thousands of values); more draws
-/// decide.
+/// the ends can explain (kScatter of their standard errors, which allows for thousands of values), or that
+/// fewer than kFewestForEnds draws were made; more draws decide.
 enum class LinearVerdict { Validated, Undecided, NotValidated };
 inline constexpr double kScatter = 4.0;
+/// Of fewer draws none is expected beyond an end of a 95 % interval.
+inline constexpr std::uint64_t kFewestForEnds = 40;
 std::string_view to_string(LinearVerdict verdict);
 
 /// SI.
@@ -82,7 +88,7 @@ struct QuantityResult {
   Quantity quantity;
   double u_linear = 0.0;
   double bias_linear = 0.0;
-  double u = 0.0;           ///< of the draws
+  double u = 0.0;           ///< of the draws; NaN of a single one
   double bias = 0.0;        ///< mean of the draws minus the estimate of the fit
   double bias_error = 0.0;  ///< standard error of the bias
   CoverageInterval linear;  ///< estimate + bias_linear -+ k u_linear
@@ -105,6 +111,7 @@ struct MonteCarloResult {
   bool adaptive = false;
   bool settled = false;            ///< 2 s < delta for all quantities
   std::uint64_t would_settle = 0;  ///< draws that would settle all of them, as far as is known
+  std::uint64_t most_draws = 0;    ///< that an adaptive study was allowed
   RefitCheck check;
   std::uint64_t steps = 0;          ///< of the chord path or iterations of refits
   std::uint64_t refitted = 0;       ///< draws that chord steps did not solve
@@ -129,7 +136,8 @@ class MonteCarloStudy {
 
   DrawPath path() const;
   std::uint64_t draws() const;
-  /// Draws that the study will take: given; or by the scatter so far, of the first by normal theory.
+  /// Draws that the study will take: given; or by the scatter so far, of the first by normal theory, as many
+  /// as it may take.
   std::uint64_t expected_draws() const;
   bool done() const;
   void run_block();

@@ -314,6 +314,17 @@ TEST_F(MonteCarloCommand, EndsAtItsLimitWithWhatItHasReached) {
             json.at("draws").get<int>());
 }
 
+/// Two digits take two sequences of 10,000 draws at least, which ten draws say nothing against.
+TEST_F(MonteCarloCommand, SaysThatMostDrawsEndedIt) {
+  const testing::ProgramRun run = montecarlo("--path linear --refits 0 --most-draws 10 -o " + path("ten"));
+  EXPECT_EQ(run.exit_code, 1) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Monte Carlo, 10 draws"));
+  EXPECT_THAT(run.output, HasSubstr("draws would settle all: --most-draws 10 ended it, give more"));
+  EXPECT_THAT(run.output, ::testing::Not(HasSubstr("about 10 draws")));
+  EXPECT_THAT(run.output, HasSubstr("undecided: fewer than 40 draws have no ends"));
+  EXPECT_FALSE(fs::exists(path("ten.checkpoint")));
+}
+
 TEST_F(MonteCarloCommand, InterruptedStudyNamesResume) {
   const std::string output = path("stopped"), said = path("said");
   const pid_t child = ::fork();

@@ -143,14 +143,17 @@ std::string montecarlo_csv(const MonteCarloResult& result) {
       if (quantity.at) fmt::format_to(out, "{:.10g}", (*quantity.at)[index_of(axis)] / kMetrePerMillimetre);
       fmt::format_to(out, ",");
     }
-    fmt::format_to(out, "{},{:.9g},{:.6g},{:.6g},", quantity.unit, quantity.estimate / unit,
-                   value.u_linear / unit, value.u / unit);
-    if (value.u_linear > 0.0) fmt::format_to(out, "{:.5f}", value.u / value.u_linear);
-    fmt::format_to(out, ",{:.4g},{:.3g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.3g},{:.4g},",
-                   value.bias / unit, value.bias_error / unit, value.symmetric.low / unit,
-                   value.symmetric.high / unit, value.shortest.low / unit, value.shortest.high / unit,
-                   value.linear.low / unit, value.linear.high / unit, value.tolerance / unit,
-                   value.difference / unit);
+    const bool has_u = std::isfinite(value.u);
+    fmt::format_to(out, "{},{:.9g},{:.6g},", quantity.unit, quantity.estimate / unit, value.u_linear / unit);
+    if (has_u) fmt::format_to(out, "{:.6g}", value.u / unit);
+    fmt::format_to(out, ",");
+    if (has_u && value.u_linear > 0.0) fmt::format_to(out, "{:.5f}", value.u / value.u_linear);
+    fmt::format_to(out, ",{:.4g},", value.bias / unit);
+    if (has_u) fmt::format_to(out, "{:.3g}", value.bias_error / unit);
+    fmt::format_to(out, ",{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.3g},{:.4g},",
+                   value.symmetric.low / unit, value.symmetric.high / unit, value.shortest.low / unit,
+                   value.shortest.high / unit, value.linear.low / unit, value.linear.high / unit,
+                   value.tolerance / unit, value.difference / unit);
     if (value.verdict != LinearVerdict::Undecided)
       fmt::format_to(out, "{}", value.verdict == LinearVerdict::Validated ? 1 : 0);
     fmt::format_to(out, "\n");

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "volcal/identify/report/text/budget_text.h"
 #include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/findings_text.h"
@@ -30,7 +34,7 @@ QuantityLine line_of(const MonteCarloResult& result, const QuantityGroup& group)
 std::string ratio_words(const QuantityLine& line) {
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
   for (const QuantityResult* value : line.values) {
-    if (!(value->u_linear > 0.0)) return "-";
+    if (!(value->u_linear > 0.0) || std::isnan(value->u)) return "-";
     low = std::min(low, value->u / value->u_linear);
     high = std::max(high, value->u / value->u_linear);
   }
@@ -63,7 +67,10 @@ std::string quantity_table(const MonteCarloResult& result) {
       "Standard uncertainties (the largest of each line) by linear propagation and by Monte Carlo");
   for (const QuantityGroup& group : quantity_groups(result)) {
     const QuantityLine line = line_of(result, group);
-    const auto by_u = [](const QuantityResult* a, const QuantityResult* b) { return a->u < b->u; };
+    const auto spread = [](const QuantityResult* value) {
+      return value->u > 0.0 ? value->u : value->u_linear;
+    };
+    const auto by_u = [&](const QuantityResult* a, const QuantityResult* b) { return spread(a) < spread(b); };
     const auto by_bias = [](const QuantityResult* a, const QuantityResult* b) {
       return std::abs(a->bias) < std::abs(b->bias);
     };
@@ -102,9 +109,19 @@ std::string tolerance_words(const MonteCarloResult& result) {
   const auto settled = std::ranges::count_if(
       result.quantities, [](const QuantityResult& value) { return value.scatter < value.tolerance; });
   text += fmt::format("reached for {} of {} values\n", settled, result.quantities.size());
-  return text +
-         fmt::format("             about {} draws would settle all: --resume goes on where this ended\n",
-                     count_number(static_cast<long long>(result.would_settle)));
+  text += fmt::format("             about {} draws would settle all: ",
+                      count_number(static_cast<long long>(result.would_settle)));
+  if (result.most_draws == 0 || result.draws < result.most_draws)
+    return text + "--resume goes on where this ended\n";
+  return text + fmt::format("--most-draws {} ended it, give more\n", result.most_draws);
+}
+
+/// How many steps, and what they leave.
+std::string steps_text(const MonteCarloResult& result) {
+  std::string text = fmt::format("  steps      {:.2f} a draw; ",
+                                 static_cast<double>(result.steps) / static_cast<double>(result.draws));
+  return text + fmt::format("further ones would change less than {} standard deviations\n",
+                            short_number(result.to_come, 2));
 }
 
 std::string study_head(const MonteCarloResult& result) {
@@ -124,10 +141,7 @@ std::string study_head(const MonteCarloResult& result) {
     text += tolerance_words(result);
   }
   if (result.path == DrawPath::Chord) {
-    text += fmt::format(
-        "  steps      {:.2f} a draw; further ones would change less than {} standard deviations\n",
-        static_cast<double>(result.steps) / static_cast<double>(result.draws),
-        short_number(result.to_come, 2));
+    text += steps_text(result);
     if (result.refitted > 0)
       text += fmt::format("  refitted   {} draws that steps did not solve\n", result.refitted);
   }
@@ -158,6 +172,10 @@ std::string verdict_text(const MonteCarloResult& result) {
       result.digits, to_string(overall), counts[0], result.quantities.size(), counts[1], counts[2],
       worst->quantity.words(), short_number(worst->difference / unit, 2), worst->quantity.unit,
       short_number(worst->tolerance / unit, 2), short_number(worst->end_error / unit, 2));
+  if (result.draws < kFewestForEnds)
+    return text +
+           fmt::format("  undecided: fewer than {} draws have no ends of a 95 % interval; more decide\n",
+                       kFewestForEnds);
   if (counts[1] > 0)
     text += "  undecided: the scatter of the ends explains the difference; more draws decide\n";
   return text;

@@ -338,6 +338,48 @@ TEST_F(TracerStudy, AdaptiveStudyEndsWhenEveryFigureHasSettled) {
     EXPECT_LT(value.scatter, value.tolerance) << value.quantity.words();
 }
 
+/// Of one draw there is no scatter, of a few too little to reject anything.
+TEST_F(TracerStudy, FewLinearDrawsDecideNothing) {
+  for (const std::uint64_t draws : {1U, 2U, 3U, 100U}) {
+    MonteCarloOptions options;
+    options.path = DrawPath::Linear;
+    options.refits = 0;
+    options.draws = draws;
+    options.grid_per_axis = 0;
+    const MonteCarloResult study = studied(campaign(), result(), options);
+    for (const QuantityResult& value : study.quantities) {
+      EXPECT_NE(value.verdict, LinearVerdict::NotValidated) << draws << value.quantity.words();
+      EXPECT_EQ(std::isnan(value.u), draws == 1) << draws << value.quantity.words();
+      if (draws < kFewestForEnds) {
+        EXPECT_EQ(value.verdict, LinearVerdict::Undecided) << value.quantity.words();
+      }
+    }
+  }
+}
+
+TEST_F(TracerStudy, EndsAtItsMostDrawsAndForecastsMore) {
+  MonteCarloOptions options;
+  options.path = DrawPath::Linear;
+  options.refits = 0;
+  options.grid_per_axis = 0;
+  options.most_draws = 12345;
+  const MonteCarloResult study = studied(campaign(), result(), options);
+  EXPECT_EQ(study.draws, 12345U);
+  EXPECT_FALSE(study.settled);
+  EXPECT_GE(study.would_settle, 2 * StudySums::kSequence);
+}
+
+// Four draws of +-0: their own scatter is nothing, that of linear propagation 2.67 / sqrt(4).
+TEST(StudySums, EndsOfAFewDrawsScatterAsLinearPropagationSays) {
+  StudySums sums(1);
+  const Eigen::ArrayXXd none = Eigen::ArrayXXd::Zero(4, 1);
+  Histograms counts(1);
+  counts.add(none);
+  sums.add(Moments::of(none), counts);
+  EXPECT_DOUBLE_EQ(sums.end_error(0), 2.67 / 2.0);
+  EXPECT_DOUBLE_EQ(sums.largest_end_error(0), 2.67 / 2.0);
+}
+
 TEST(MonteCarlo, RefusesWhatTheReadingsDoNotDetermine) {
   LinesOfOneLaser lines;
   lines.model.functions[*ErrorSymbol::parse("EYX")] = lines.model.functions[*ErrorSymbol::parse("EXX")];

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -98,6 +99,14 @@ TEST(MonteCarloReport, SaysWhatTheReadingsContradict) {
   const auto messages = page_data_of_study(report_of(study), "uncertainties").at("messages");
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_THAT(messages[0].get<std::string>(), HasSubstr("converge"));
+}
+
+/// Of one draw there is no u: the largest of a line is that by linear propagation.
+TEST(MonteCarloReport, LineOfASingleDrawIsTheWidestByLinearPropagation) {
+  MonteCarloResult study = hand_made_study();
+  for (QuantityResult& value : study.quantities) value.u = std::nan("");
+  study.quantities[1].u_linear = 0.75e-6;
+  EXPECT_THAT(montecarlo_text(study), ::testing::ContainsRegex("EXX +4 +um +0\\.7500 +- +- "));
 }
 
 // Variances 0.09 and 0.16 of 0.25; with half of the second source 0.09 + 0.04 = 0.13.

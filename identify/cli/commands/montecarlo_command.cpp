@@ -294,9 +294,11 @@ std::function<int()> define_montecarlo(CLI::App& app) {
                  "OUTPUT.checkpoint")
       ->required();
   define_draws(app, arguments->options);
-  app.add_option("--path", arguments->path,
-                 "linear: one matrix product; chord: steps with an exact gradient; refit: the adjustment run "
-                 "again; auto: the fastest that agrees with the sample of refits")
+  app.add_option(
+         "--path", arguments->path,
+         "linear: one matrix product; chord: steps with an exact gradient, the transforms' second order "
+         "held at the identified machine; refit: the adjustment run again; auto: the fastest that agrees "
+         "with the sample of refits")
       ->check(CLI::IsMember({"auto", "linear", "chord", "refit"}));
   app.add_option("--functions", arguments->functions,
                  "drawn: what smoothing says of the functions is drawn too, u as in the tables; fixed: "

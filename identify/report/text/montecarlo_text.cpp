@@ -120,6 +120,8 @@ std::string tolerance_words(const MonteCarloResult& result) {
 std::string steps_text(const MonteCarloResult& result) {
   std::string text = fmt::format("  steps      {:.2f} a draw; ",
                                  static_cast<double>(result.steps) / static_cast<double>(result.draws));
+  const std::string held = held_by_steps_text(result);
+  if (!held.empty()) return text + held + "\n";
   return text + fmt::format("further ones would change less than {} standard deviations\n",
                             short_number(result.to_come, 2));
 }
@@ -196,6 +198,19 @@ std::string free_combination_text(const std::vector<Finding>& invisible) {
 }
 
 }  // namespace
+
+std::string held_by_steps_text(const MonteCarloResult& result) {
+  const PathCheck& check = result.check.chord;
+  if (result.path != DrawPath::Chord) return "";
+  if (check.draws == 0)
+    return "they hold the second order of the transforms at the identified machine; what that leaves out is "
+           "not known without --refits";
+  if (check.largest_share <= kShareOfTolerance) return "";
+  return fmt::format(
+      "they hold the second order of the transforms at the identified machine, and refits differ by {} times "
+      "the tolerance where {} is allowed: take --path refit",
+      short_number(check.largest_share, 2), kShareOfTolerance);
+}
 
 std::string montecarlo_text(const MonteCarloResult& result) {
   std::string text = study_head(result);

@@ -101,6 +101,26 @@ TEST(MonteCarloReport, SaysWhatTheReadingsContradict) {
   EXPECT_THAT(messages[0].get<std::string>(), HasSubstr("converge"));
 }
 
+/// Steps hold the second order of the transforms: what they leave is not the whole where refits differ by
+/// more than a fifth of the tolerance, or where there are none.
+TEST(MonteCarloReport, SaysWhatStepsHoldWhereRefitsDoNotAgree) {
+  MonteCarloResult study = hand_made_study();
+  study.path = DrawPath::Chord;
+  study.steps = 1200;
+  study.check.chord.draws = 20;
+  study.check.chord.largest_share = 0.19;
+  EXPECT_THAT(montecarlo_text(study), HasSubstr("1.20 a draw; further ones would change less than"));
+  EXPECT_EQ(page_data_of_study(report_of(study), "uncertainties").at("held"), "");
+  study.check.chord.largest_share = 0.3;
+  const std::string text = montecarlo_text(study);
+  EXPECT_THAT(text,
+              HasSubstr("refits differ by 0.30 times the tolerance where 0.2 is allowed: take --path refit"));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("further ones would change less")));
+  study.check.chord.draws = 0;
+  EXPECT_THAT(montecarlo_text(study), HasSubstr("what that leaves out is not known without --refits"));
+  EXPECT_EQ(page_data_of_study(report_of(study), "uncertainties").at("held"), held_by_steps_text(study));
+}
+
 /// Of one draw there is no u: the largest of a line is that by linear propagation.
 TEST(MonteCarloReport, LineOfASingleDrawIsTheWidestByLinearPropagation) {
   MonteCarloResult study = hand_made_study();

@@ -3,6 +3,7 @@
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/page.h"
 #include "volcal/identify/report/text/field_text.h"
+#include "volcal/identify/report/text/montecarlo_text.h"
 #include "volcal/identify/report/values/quantity_groups.h"
 #include "volcal/identify/words/sentences.h"
 
@@ -106,6 +107,7 @@ Json uncertainties_page(const MonteCarloPageInput& input) {
           {"refits", study.check.linear.draws},
           {"linear_share", rounded(study.check.linear.largest_share, 2)},
           {"chord_share", rounded(study.check.chord.largest_share, 2)},
+          {"held", held_by_steps_text(study)},
           {"messages", messages(study)},
           {"functions", functions(study)},
           {"others", others(study)}};

@@ -39,6 +39,7 @@ export function renderUncertainties(body, data) {
   if (data.functions.length > 0) {
     let shown = data.functions[0];
     const node = el('div', { class: 'plot' });
+  if (data.held !== '') body.append(el('p', { class: 'note strong' }, `Of the steps: ${data.held}.`));
     const redraw = addPlot(node, () => functionPlot(shown, data));
     const menu = choice('Error', data.functions.map((one, k) => [String(k), one.symbol]), (k) => { shown = data.functions[Number(k)]; redraw(); });
     body.append(el('div', { class: 'controls' }, [menu]), node);

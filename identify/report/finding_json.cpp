@@ -9,7 +9,7 @@ Json finding_json(const EffectFinding& effect) {
   Json amplitudes = Json::array();
   for (const AmplitudeFigure& each : effect.amplitudes) {
     amplitudes.push_back({{"label", each.label},
-                          {"value", rounded(each.value / each.si_per_unit, 4)},
+                          {"value", rounded(each.value / each.si_per_unit, kDigitsBesideU)},
                           {"U95", rounded(kCoverageFactor * each.u / each.si_per_unit, 3)},
                           {"mdb", rounded(each.mdb / each.si_per_unit, 3)},
                           {"unit", shown_unit(each.unit)}});

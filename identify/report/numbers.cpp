@@ -12,8 +12,11 @@
 namespace volcal::report {
 
 Json rounded(double value, int digits) {
+  constexpr int kLeastDecimals = 3;
   if (!std::isfinite(value)) return nullptr;
   if (value == 0.0) return 0;
+  const int before_point = static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
+  digits = std::clamp(before_point + kLeastDecimals, digits, std::max(digits, 15));
   char text[40];
   std::snprintf(text, sizeof text, "%.*g", digits, value);
   return std::strtod(text, nullptr);

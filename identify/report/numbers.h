@@ -9,8 +9,11 @@
 
 namespace volcal::report {
 
-/// `value` with `digits` significant decimal digits; not-a-number and infinity become null.
+/// `value` with `digits` significant decimal digits, and a thousandth at least, so that no page that shows
+/// fixed decimals invents one; not-a-number and infinity become null.
 Json rounded(double value, int digits = 5);
+/// Of a value that is shown with the decimals of its uncertainty.
+inline constexpr int kDigitsBesideU = 12;
 Json rounded_array(const std::vector<double>& values, double factor, int digits = 5);
 /// A length in m as um; what is below a picometre is rounding and becomes 0.
 Json rounded_micrometres(double metres, int digits = 4);

@@ -65,13 +65,13 @@ Json line_errors(const RotaryLine& drawn, double coverage_factor) {
     const int place = direction + (tilt ? 3 : 0);
     const double value = tilt ? line.value.rotation[direction] : line.value.displacement[direction];
     const LocationSymbol symbol{component, line.axis};
-    errors.push_back(
-        {{"symbol", symbol.name()},
-         {"unit", tilt ? "µrad" : "µm"},
-         {"visible", std::ranges::find(drawn.not_visible, symbol) == drawn.not_visible.end()},
-         {"by_convention", line.by_convention[static_cast<std::size_t>(place)]},
-         {"value", rounded(value * kPerMicro)},
-         {"U95", rounded(coverage_factor * std::sqrt(line.covariance(place, place)) * kPerMicro, 3)}});
+    errors.push_back({{"symbol", symbol.name()},
+                      {"unit", tilt ? "µrad" : "µm"},
+                      {"visible", std::ranges::find(drawn.not_visible, symbol) == drawn.not_visible.end()},
+                      {"by_convention", line.by_convention[static_cast<std::size_t>(place)]},
+                      {"value", rounded(value * kPerMicro, kDigitsBesideU)},
+                      {"U95", rounded(coverage_factor * std::sqrt(line.covariance(place, place)) * kPerMicro,
+                                      kDigitsBesideU)}});
   }
   return errors;
 }

@@ -47,9 +47,9 @@ Json identified(const FitResult& result, const ParameterBlock& block) {
               {"unit", is_rotation(symbol.component) ? "µrad" : "µm"},
               {"state", visible ? "identified" : "invisible"},
               {"reason", visible ? "" : explanation(error->cause).reason},
-              {"value", rounded(value * kPerMicro)},
-              {"u", rounded(u * kPerMicro, 3)},
-              {"U95", rounded(result.coverage_factor * u * kPerMicro, 3)}};
+              {"value", rounded(value * kPerMicro, kDigitsBesideU)},
+              {"u", rounded(u * kPerMicro, kDigitsBesideU)},
+              {"U95", rounded(result.coverage_factor * u * kPerMicro, kDigitsBesideU)}};
   if (!is_rotary(symbol.axis)) {
     row["travel_mm"] = rounded(result.machine.axis(symbol.axis).travel() / kMetrePerMillimetre, 7);
     row["over_travel_um"] = rounded(over_travel(result.machine, symbol, value) * kPerMicro);

@@ -35,10 +35,10 @@ Json parameter_row(const FitResult& result, const ParameterBlock& block, int i) 
           {"label", block.labels[static_cast<std::size_t>(i)]},
           {"kind", kind_name(block.kind)},
           {"unit", shown_unit(block.units[static_cast<std::size_t>(i)])},
-          {"value", rounded(value * per_si, 9)},
+          {"value", rounded(value * per_si, kDigitsBesideU)},
           {"u", rounded(u * per_si, 3)},
-          {"guess", rounded(block.guess[i] * per_si, 7)},
-          {"change", rounded((value - block.guess[i]) * per_si, 4)},
+          {"guess", rounded(block.guess[i] * per_si, kDigitsBesideU)},
+          {"change", rounded((value - block.guess[i]) * per_si, kDigitsBesideU)},
           {"prior_sigma", rounded(block.prior_sigma[i] > 0 ? block.prior_sigma[i] * per_si : NAN, 3)},
           {"weak_default_prior", block.weak_default_prior}};
 }
@@ -50,10 +50,10 @@ Json surface_row(const SurfaceValues& surface) {
           {"label", "largest"},
           {"kind", kind_name(ParameterKind::Effect)},
           {"unit", shown_unit(surface.unit)},
-          {"value", rounded(surface.largest * per_si, 9)},
+          {"value", rounded(surface.largest * per_si, kDigitsBesideU)},
           {"u", rounded(surface.largest_u * per_si, 3)},
           {"guess", 0.0},
-          {"change", rounded(surface.largest * per_si, 4)},
+          {"change", rounded(surface.largest * per_si, kDigitsBesideU)},
           {"prior_sigma", nullptr},
           {"weak_default_prior", false}};
 }

@@ -12,7 +12,7 @@ Json halved_rows(const MonteCarloResult& study, const std::vector<std::size_t>& 
   for (const std::size_t source : sources) {
     const double half = volume_u(study, study.budget.u_with_half_of(source));
     rows.push_back({{"source", study.budget.sources[source]},
-                    {"u_um", rounded(half * kPerMicro, 4)},
+                    {"u_um", rounded(half * kPerMicro, 6)},
                     {"less", rounded(1.0 - half / now, 3)}});
   }
   return rows;

@@ -48,14 +48,23 @@ function headerCell(column) {
   ]);
 }
 
+const kWords = 16; // characters: longer texts break into lines
+
+const classOf = (column, content) =>
+  `${column.align ?? 'right'}${column.align === 'left' && typeof content === 'string' && content.length > kWords ? ' words' : ''}`;
+
+function bodyCell(column, row, isHead) {
+  const content = column.cell(row);
+  return el(isHead ? 'th' : 'td', { class: classOf(column, content), scope: isHead ? 'row' : null }, content);
+}
+
 /**
  * Table from rows of data. Columns: { name, unit, align: 'left' | 'right' (default), cell: row => text or node,
  * title }; the first heads its row. `rowClass`: row => class or null. Without `caption` a table is named after its heading.
  */
 export function table(columns, rows, { rowClass = () => null, className = '', caption = null } = {}) {
   const body = rows.map((row) =>
-    el('tr', { class: rowClass(row) }, columns.map((column, k) =>
-      (k === 0 ? el('th', { class: column.align ?? 'right', scope: 'row' }, column.cell(row)) : el('td', { class: column.align ?? 'right' }, column.cell(row))))));
+    el('tr', { class: rowClass(row) }, columns.map((column, k) => bodyCell(column, row, k === 0))));
   return el('div', { class: 'table-frame' }, el('table', { class: className }, [
     caption ? el('caption', { class: 'hidden' }, caption) : null,
     el('thead', {}, el('tr', {}, columns.map(headerCell))),
@@ -65,12 +74,14 @@ export function table(columns, rows, { rowClass = () => null, className = '', ca
 
 const kRowsOnPaper = 20; // as in report.css
 
-/** Table that scrolls on the screen when it is long; on paper its first rows. */
-export function longTable(columns, rows, options) {
+/** Table that scrolls on the screen when it is long; on paper its first rows and those that are marked. */
+export function longTable(columns, rows, options = {}) {
   const node = table(columns, rows, options);
   if (rows.length <= kRowsOnPaper + 4) return node;
   node.classList.add('long');
-  return el('div', {}, [node, el('p', { class: 'note paper-only' }, `The first ${kRowsOnPaper} of ${count(rows.length)} rows; the others are on the screen.`)]);
+  const marked = rows.slice(kRowsOnPaper).filter((row) => options.rowClass?.(row) === 'marked').length;
+  const kept = marked > 0 ? ` and ${count(marked)} more that ${marked === 1 ? 'is' : 'are'} marked` : '';
+  return el('div', {}, [node, el('p', { class: 'note paper-only' }, `The first ${kRowsOnPaper} of ${count(rows.length)} rows${kept}; the others are on the screen.`)]);
 }
 
 /** Row of buttons of which one is chosen. */

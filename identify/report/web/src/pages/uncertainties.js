@@ -32,14 +32,19 @@ function summaryText(data) {
   return `${count(data.draws)} draws, seed ${data.seed}, path ${data.path}.${checked}${lost} Linear propagation (GUM Supplement 1, clause 8, ${data.digits} digits): ${count(validated)} values validated, ${count(undecided)} undecided by so few draws, ${count(not_validated)} not validated.`;
 }
 
+const kVerdicts = ['not validated', 'undecided', 'validated'];
+
+/** On paper a long table ends before its rows do. */
+const worstFirst = (rows) => [...rows].sort((a, b) => kVerdicts.indexOf(a.verdict) - kVerdicts.indexOf(b.verdict));
+
 export function renderUncertainties(body, data) {
   body.append(note(summaryText(data)));
+  if (data.held !== '') body.append(el('p', { class: 'note strong' }, `Of the steps: ${data.held}.`));
   if (data.messages.length > 0) body.append(el('ul', { class: 'messages' }, data.messages.map((text) => el('li', {}, printed(text)))));
   for (const words of data.disturbances) body.append(note(`Disturbed by ${words}, which the fit knows nothing of.`));
   if (data.functions.length > 0) {
     let shown = data.functions[0];
     const node = el('div', { class: 'plot' });
-  if (data.held !== '') body.append(el('p', { class: 'note strong' }, `Of the steps: ${data.held}.`));
     const redraw = addPlot(node, () => functionPlot(shown, data));
     const menu = choice('Error', data.functions.map((one, k) => [String(k), one.symbol]), (k) => { shown = data.functions[Number(k)]; redraw(); });
     body.append(el('div', { class: 'controls' }, [menu]), node);
@@ -48,10 +53,10 @@ export function renderUncertainties(body, data) {
     { name: 'Quantity', align: 'left', cell: (row) => row.name },
     { name: 'u linear', cell: (row) => significant(row.linear, 3) },
     { name: 'u', cell: (row) => significant(row.u, 3) },
-    { name: 'u / u linear', cell: (row) => (row.linear > 0 ? fixed(row.u / row.linear, 3) : '–') },
+    { name: 'u / u linear', cell: (row) => (row.linear > 0 && row.u !== null ? fixed(row.u / row.linear, 3) : '–') },
     { name: 'Bias', cell: (row) => significant(row.bias, 2) },
     { name: '±', cell: (row) => significant(row.bias_error, 1) },
     { name: 'Unit', align: 'left', cell: (row) => row.unit },
     { name: 'Linear propagation', align: 'left', cell: (row) => row.verdict },
-  ], data.others));
+  ], worstFirst(data.others)));
 }

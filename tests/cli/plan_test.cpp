@@ -162,6 +162,10 @@ TEST(Plan, RefusesBadInput) {
   refused(kMachine + " --readings 100 --minimise EXQ", "is not an error of this machine");
   refused(kMachine + " --readings 100 --minimise separate:reversal:EXX", "cannot be separated");
   refused(kMachine + " --readings 100 --minimise separate:reversal:EXX,nonsense:Y", "not a kind of effect");
+  refused(kMachine +
+              " --readings 100 --minimise 'separate:dead-path:readings of P1_short,"
+              "dead-path:readings of P1_short'",
+          "names dead-path:readings of P1_short:");
   refused(kMachine + " --readings 100 --extend", "nothing to extend");
   refused(kMachine + " --readings 100 --range-mm 900,300", "not the smaller one");
   refused(kMachine + " --readings 100 --region-mm 500,100,0,1,0,1", "above its upper one");

@@ -139,9 +139,8 @@ void read_target(const PlanArguments& arguments, const Campaign* with, PlanSetti
   }
   const Campaign textbook =
       with != nullptr ? *with : campaign_of(textbook_layout(settings, LineOfSight(settings)), settings);
-  for (const std::string& name : {names.substr(0, comma), names.substr(comma + 1)}) {
-    settings.separate.push_back(named_effect("--minimise separate:", name, textbook));
-  }
+  settings.separate =
+      named_effects("--minimise separate:", {names.substr(0, comma), names.substr(comma + 1)}, textbook);
 }
 
 PlanSettings settings_of(const PlanArguments& arguments, const Machine& machine,

@@ -1,6 +1,6 @@
 #include "volcal/identify/criticism/catalogue/named_effect.h"
 
-#include <vector>
+#include <set>
 
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/model/description/errors.h"
@@ -54,6 +54,19 @@ EffectSpec named_effect(const std::string& option, const std::string& text, cons
   }
   throw InputError({}, option + " " + text + " fits " + std::to_string(matching.size()) + " effects",
                    "choose one of " + names);
+}
+
+std::vector<EffectSpec> named_effects(const std::string& option, const std::vector<std::string>& texts,
+                                      const Campaign& campaign) {
+  std::vector<EffectSpec> specs;
+  std::set<std::string> named;
+  for (const std::string& text : texts) {
+    specs.push_back(named_effect(option, text, campaign));
+    const std::string name = full_name(find_effect(specs.back().kind)->make(specs.back(), {})->name());
+    if (!named.insert(name).second)
+      throw InputError({}, option + " names " + name + " twice", "give every effect once");
+  }
+  return specs;
 }
 
 }  // namespace volcal

@@ -125,9 +125,7 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   options.threads = arguments.threads;
   options.climb = arguments.climb;
   options.planning.readings = arguments.readings;
-  for (const std::string& effect : arguments.separate) {
-    options.planning.separate.push_back(named_effect("--separate", effect, campaign));
-  }
+  options.planning.separate = named_effects("--separate", arguments.separate, campaign);
   for (const WrittenEffect& tried : written_effects("--try", arguments.tried, arguments.parameters))
     options.own.push_back(tried.spec);
   ModelSpec criticised = model;

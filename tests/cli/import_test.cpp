@@ -112,6 +112,21 @@ TEST_F(ImportCommand, AGuessIsShownAndConfirmed) {
   EXPECT_EQ(run_program("compare " + path("campaign/campaign.toml") + " nominal").exit_code, 0);
 }
 
+/// Of 1 um on 500 mm and 2 um on 1000 mm down to 0: EXX rises with X.
+TEST_F(ImportCommand, ADecimalSignThatStaysOpenIsAskedFor) {
+  write("machine.toml", testing::replaced(testing::kImportMachine, "500.0", "1000.0"));
+  write("t.txt", "Soll X [mm]\tAbweichung [um]\n1,000\t2\n500\t1\n0\t0\n");
+  const std::string options = std::string("--instrument displacement --yes ") + kAt;
+  const ProgramRun open = import(path("t.txt"), options);
+  EXPECT_EQ(open.exit_code, 2);
+  EXPECT_THAT(open.errors, HasSubstr("give --decimal comma or --decimal point"));
+  const ProgramRun run = import(path("t.txt"), options + "--decimal t:point");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(content(scratch_.path() / "campaign/t.csv"), HasSubstr("\n1000,"));
+  EXPECT_THAT(content(scratch_.path() / "campaign/campaign.toml"), HasSubstr("direction = [1"));
+  EXPECT_THAT(import(path("t.txt"), options + "--decimal dot").errors, HasSubstr("--decimal is \"dot\""));
+}
+
 TEST_F(ImportCommand, ATrackersListWithItsCommandedPositions) {
   const testing::SampleImport sample = testing::sample_point_lists()[1];
   write("points.txt", sample.bytes);

@@ -203,7 +203,8 @@ inline bool accepts_readings(const std::string& text, std::size_t instrument_ind
 inline bool accepts_import(const std::string& bytes, unsigned format, unsigned said) {
   return accepts([&] {
     const auto encoding = (said & 1U) != 0 ? std::optional(TextEncoding::Cp1252) : std::nullopt;
-    const ImportSource source{"file", foreign_text(bytes, "file", encoding, "give --encoding ")};
+    const ImportSource source{"file", foreign_text(bytes, "file", encoding, "give --encoding "),
+                              (said & 128U) != 0 ? std::optional('.') : std::nullopt};
     const auto formats = import_formats();
     if (format % (formats.size() + 1) == formats.size()) import_format_of(source, std::nullopt);
     ImportAnswers answers;

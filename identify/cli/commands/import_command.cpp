@@ -86,7 +86,8 @@ void require_confirmation(const ImportArguments& arguments, const ImportedFile& 
 
 ImportedFile import_file(const ImportArguments& arguments, const std::string& path, const Machine& machine) {
   const ImportAnswers answers = import_answers(path, arguments.files, arguments.options);
-  const ImportSource source{path, read_foreign_text(path, answers.encoding, "give --encoding ")};
+  const ImportSource source{path, read_foreign_text(path, answers.encoding, "give --encoding "),
+                            decimal_of(path, arguments.files, arguments.options)};
   const ImportFormat& format = import_format_of(source, arguments.options.format);
   ImportedFile file{path, "", tool_of(arguments, path, machine), {}};
   file.readings = format.read(source, answers, machine, file.tool);

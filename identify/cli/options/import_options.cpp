@@ -103,6 +103,9 @@ void add_import_options(CLI::App& app, ImportOptions& options) {
       "of a list without header, its columns of numbers: x,y,z or hz,v,distance");
   add("--nominal", options.nominal,
       "CSV of the positions commanded for a tracker's points: name,x_mm,y_mm,z_mm");
+  add("--decimal", options.decimal,
+      "sign of the numbers, of --nominal, too, where they do not tell it: point (1,000 is a thousand), "
+      "comma");
   add("--instrument", options.instrument, "of a table whose columns several instruments have");
   add("--tool", options.tool, "of the machine, at which was measured; needed where it has several");
   add("--set", options.set, "a key of the setup as campaign.toml has it: \"noise = { constant_um = 0.3 }\"");
@@ -123,6 +126,14 @@ std::optional<std::string> value_for(const std::string& file, const std::vector<
   return for_this ? for_this : for_all;
 }
 
+std::optional<char> decimal_of(const std::string& file, const std::vector<std::string>& files,
+                               const ImportOptions& options) {
+  const auto name = value_for(file, files, "--decimal", options.decimal);
+  if (!name) return std::nullopt;
+  require_choice("--decimal", *name, {"point", "comma"});
+  return *name == "comma" ? ',' : '.';
+}
+
 ImportAnswers import_answers(const std::string& file, const std::vector<std::string>& files,
                              const ImportOptions& options) {
   const auto value = [&](const char* option, const std::vector<std::string>& values) {
@@ -139,7 +150,8 @@ ImportAnswers import_answers(const std::string& file, const std::vector<std::str
   answers.vertical = value("--vertical", options.vertical);
   answers.columns = value("--columns", options.columns);
   if (const auto nominal = value("--nominal", options.nominal))
-    answers.nominal = {*nominal, read_foreign_text(*nominal, answers.encoding, "give --encoding ")};
+    answers.nominal = {*nominal, read_foreign_text(*nominal, answers.encoding, "give --encoding "),
+                       decimal_of(file, files, options)};
   answers.instrument = value("--instrument", options.instrument);
   if (const auto at = value("--at", options.at)) answers.at = positions_of(*at);
   for (const bool for_one : {false, true}) {

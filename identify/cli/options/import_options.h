@@ -14,7 +14,7 @@ namespace volcal::cli {
 struct ImportOptions {
   std::optional<std::string> encoding, format;
   std::vector<std::string> unit, runs, axis, measures, at, angle_unit, horizontal, vertical, columns,
-      instrument, nominal, tool, set;
+      instrument, nominal, decimal, tool, set;
 };
 
 void add_import_options(CLI::App& app, ImportOptions& options);
@@ -23,6 +23,10 @@ void add_import_options(CLI::App& app, ImportOptions& options);
 /// Throws InputError for two of either.
 std::optional<std::string> value_for(const std::string& file, const std::vector<std::string>& files,
                                      const std::string& option, const std::vector<std::string>& values);
+
+/// Decimal sign of the numbers of one of the files, if it is said. Throws InputError.
+std::optional<char> decimal_of(const std::string& file, const std::vector<std::string>& files,
+                               const ImportOptions& options);
 
 /// Answers for one of the files. Throws InputError for what cannot be read.
 ImportAnswers import_answers(const std::string& file, const std::vector<std::string>& files,

@@ -45,7 +45,7 @@ bool HeaderWords::has(std::initializer_list<std::string_view> any) const {
 char HeaderWords::letter() const {
   char found = 0;
   for (const std::string& word : words) {
-    if (word.size() != 1 || std::string_view("xyzabc").find(word[0]) == std::string_view::npos) continue;
+    if (word.size() != 1 || std::string_view("xyzabcuvw").find(word[0]) == std::string_view::npos) continue;
     if (found != 0) return 0;
     found = word[0];
   }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "volcal/identify/io/campaign/column_choice.h"
@@ -11,9 +12,12 @@
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/registry.h"
+#include "volcal/model/kinematics/chain.h"
 
 namespace volcal {
 namespace {
+
+constexpr double kRoundDirection = 1e9;
 
 /// Standard columns that any instrument or machine understands.
 std::vector<std::string> all_standard_columns(const Machine& machine) {
@@ -47,11 +51,13 @@ bool says_position(const HeaderWords& header) {
 
 class GenericCsv {
  public:
-  GenericCsv(const ImportSource& source, const ImportAnswers& answers, const Machine& machine)
+  GenericCsv(const ImportSource& source, const ImportAnswers& answers, const Machine& machine,
+             std::size_t tool)
       : source_(source),
         answers_(answers),
         machine_(machine),
-        layout_(guess_table_layout(source.text, source.path)) {}
+        tool_(tool),
+        layout_(guess_table_layout(source)) {}
 
   ImportedReadings read() {
     if (layout_.header.empty())
@@ -60,13 +66,17 @@ class GenericCsv {
                        "add a line of names, e.g. x_mm;y_mm;z_mm;deviation_um");
     add_fact("delimiter", delimiter_name(layout_.delimiter), layout_.delimiter == ',' ? "the rows" : "");
     add_fact("decimal sign", layout_.decimal == ',' ? "comma" : "point",
-             layout_.decimal == '.' ? "the numbers" : "");
+             source_.decimal          ? "--decimal"
+             : layout_.decimal == '.' ? "the numbers"
+                                      : "");
     if (const std::string beside = lines_beside(layout_); !beside.empty())
       add_fact("beside the table", beside, "not read");
     for (const TableRow& row : layout_.rows) readings_.source_line.push_back(row.line);
     for (std::size_t k = 0; k < layout_.header.size(); ++k) take_column(k);
     choose_instrument();
-    add_standing_axes(source_, answers_, machine_, moving_, readings_);
+    for (const AxisName axis : listed_) shift_positions(axis);
+    add_standing_axes(source_, answers_, machine_, listed_, readings_);
+    if (const auto axis = read_along()) add_direction(*axis);
     return std::move(readings_);
   }
 
@@ -83,7 +93,7 @@ class GenericCsv {
     const std::string shown = "column \"" + printable(layout_.header[k]) + "\"";
     const std::string column = layout_.numeric[k] ? meaning(layout_.header[k]) : "";
     if (column.empty()) {
-      add_fact(shown, "not read", "nobody asks for it");
+      leave_out(k, shown);
       return;
     }
     const auto twin = std::ranges::find(readings_.columns, column, &ImportedColumn::name);
@@ -98,8 +108,17 @@ class GenericCsv {
     add_fact(shown, column + (standard ? "" : unit_words(layout_.header[k], column)),
              standard ? "its name" : "");
     for (const AxisName axis : kAllAxes) {
-      if (position_column(axis) == column) moving_.push_back(axis);
+      if (position_column(axis) == column) listed_.push_back(axis);
     }
+  }
+
+  /// Positions by `--at` beside a column that may hold them are for the user to confirm.
+  void leave_out(std::size_t k, const std::string& shown) {
+    const char letter = header_words(layout_.header[k]).letter();
+    const auto axis = letter == 0 ? std::nullopt : axis_from_letter(static_cast<char>(letter - 'a' + 'A'));
+    if (axis && answers_.at.contains(*axis))
+      return add_fact(shown, std::string("not read: ") + letter_of(*axis) + " stands where --at says", "");
+    add_fact(shown, "not read", "nobody asks for it");
   }
 
   std::string meaning(const std::string& header) {
@@ -172,6 +191,59 @@ class GenericCsv {
     return *factor;
   }
 
+  const std::vector<double>& column(const std::string& name) const {
+    return std::ranges::find(readings_.columns, name, &ImportedColumn::name)->values;
+  }
+
+  void shift_positions(AxisName axis) {
+    const auto found = std::ranges::find(readings_.columns, position_column(axis), &ImportedColumn::name);
+    const double shift = shift_of(axis, found->values, {source_.path, layout_.rows.front().line}, answers_);
+    if (shift == 0.0) return;
+    for (double& value : found->values) value += shift;
+    add_fact(std::string(1, letter_of(axis)), shift_text(axis, shift), "--at");
+  }
+
+  /// The linear axis along which deviations of position are read: the only one that moves.
+  std::optional<AxisName> read_along() const {
+    const bool deviations = readings_.instrument->traits.line_reading == LineReading::Along &&
+                            std::ranges::any_of(readings_.columns, [](const ImportedColumn& one) {
+                              return one.name == "deviation_um";
+                            });
+    std::vector<AxisName> moving;
+    for (const AxisName axis : listed_) {
+      if (varies(column(position_column(axis)))) moving.push_back(axis);
+    }
+    const bool one = deviations && moving.size() == 1 && !is_rotary(moving[0]);
+    return one && !answers_.keys.contains("direction") ? std::optional(moving[0]) : std::nullopt;
+  }
+
+  AxisPosition position_of_row(std::size_t row) const {
+    AxisPosition position{};
+    for (const Axis& axis : machine_.axes)
+      position[index_of(axis.name)] =
+          column(position_column(axis.name))[row] * position_unit(axis.name).si_per_unit;
+    return position;
+  }
+
+  /// A deviation is measured minus target, in whatever order the targets were approached.
+  void add_direction(AxisName axis) {
+    const auto& positions = column(position_column(axis));
+    const auto [low, high] = std::ranges::minmax_element(positions);
+    const KinematicChain chain(machine_);
+    const auto point_w = [&](auto place) {
+      return chain.nominal_point_w(position_of_row(static_cast<std::size_t>(place - positions.begin())),
+                                   machine_.tools.at(tool_).offset);
+    };
+    const Eigen::Vector3d beam_w = (point_w(high) - point_w(low)).normalized();
+    std::string text;
+    for (const double x : beam_w)
+      text +=
+          (text.empty() ? "" : ", ") + number_text(std::round(x * kRoundDirection) / kRoundDirection + 0.0);
+    readings_.keys["direction"] = "[" + text + "]";
+    add_fact("direction", std::string("along + of ") + letter_of(axis),
+             "a deviation is measured minus target");
+  }
+
   void choose_instrument() {
     std::vector<std::string> fitting;
     for (const Instrument* instrument : instruments()) {
@@ -215,8 +287,9 @@ class GenericCsv {
   const ImportSource& source_;
   const ImportAnswers& answers_;
   const Machine& machine_;
+  std::size_t tool_;
   TableLayout layout_;
-  std::vector<AxisName> moving_;
+  std::vector<AxisName> listed_;  ///< whose positions stand in the table
   ImportedReadings readings_;
 };
 
@@ -228,14 +301,14 @@ class GenericCsvFormat final : public ImportFormat {
   }
   bool recognises(const ImportSource& source) const override {
     try {
-      return !guess_table_layout(source.text, source.path).header.empty();
+      return !guess_table_layout(source).header.empty();
     } catch (const InputError&) {
       return false;
     }
   }
   ImportedReadings read(const ImportSource& source, const ImportAnswers& answers, const Machine& machine,
-                        std::size_t /*tool*/) const override {
-    return GenericCsv(source, answers, machine).read();
+                        std::size_t tool) const override {
+    return GenericCsv(source, answers, machine, tool).read();
   }
 };
 

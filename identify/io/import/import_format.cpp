@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "volcal/identify/io/import/table_layout.h"
 #include "volcal/identify/text/nearest_name.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/units.h"
@@ -51,7 +52,17 @@ std::vector<std::string> names_of_formats() {
   return names;
 }
 
+void require_axes_of_machine(const ImportAnswers& answers, const Machine& machine) {
+  for (const auto& [axis, position] : answers.at) {
+    if (!machine.has_axis(axis))
+      throw InputError({}, std::string("--at names ") + letter_of(axis) + ", which the machine does not have",
+                       "its axes are those of the structure \"" + machine.structure.code + "\"");
+  }
+}
+
 }  // namespace
+
+const ImportFormat& generic_csv_format();
 
 const ImportFormat& import_format_of(const ImportSource& source, const std::optional<std::string>& name) {
   for (const ImportFormat* format : import_formats()) {
@@ -61,6 +72,7 @@ const ImportFormat& import_format_of(const ImportSource& source, const std::opti
   if (name)
     throw InputError({}, "format " + printable(*name) + " is not known",
                      suggest_name(*name, names, "formats"));
+  if (resembles_table(source)) return generic_csv_format();
   throw InputError({source.path, 1},
                    "the file is not understood; it begins \"" + printable(first_line(source.text)) + "\"",
                    "files of these formats are read: " + join_names(names) +
@@ -77,15 +89,30 @@ void require_choice(const std::string& option, const std::string& value,
   throw InputError({}, option + " is \"" + printable(value) + "\"", suggest_name(value, choices, "values"));
 }
 
+bool varies(const std::vector<double>& positions) {
+  return std::ranges::adjacent_find(positions, std::ranges::not_equal_to()) != positions.end();
+}
+
+double shift_of(AxisName axis, const std::vector<double>& positions, const SourcePlace& place,
+                const ImportAnswers& answers) {
+  const auto shift = answers.at.find(axis);
+  if (shift == answers.at.end()) return 0.0;
+  if (!varies(positions))
+    throw InputError(place,
+                     std::string("the table says where ") + letter_of(axis) + " stood, and so does --at",
+                     "leave one of the two out; --at is added to the positions of an axis that moves");
+  return shift->second;
+}
+
+std::string shift_text(AxisName axis, double shift) {
+  return number_text(shift) + " " + std::string(position_unit(axis).suffix) + " added to its positions";
+}
+
 void add_standing_axes(const ImportSource& source, const ImportAnswers& answers, const Machine& machine,
                        const std::vector<AxisName>& moving, ImportedReadings& readings) {
   const auto moves = [&](AxisName axis) { return std::ranges::find(moving, axis) != moving.end(); };
   std::string missing;
-  for (const auto& [axis, position] : answers.at) {
-    if (!machine.has_axis(axis))
-      throw InputError({}, std::string("--at names ") + letter_of(axis) + ", which the machine does not have",
-                       "its axes are those of the structure \"" + machine.structure.code + "\"");
-  }
+  require_axes_of_machine(answers, machine);
   for (const Axis& axis : machine.axes) {
     if (moves(axis.name)) continue;
     const auto stated = answers.at.find(axis.name);

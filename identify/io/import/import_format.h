@@ -22,6 +22,7 @@ namespace volcal {
 struct ImportSource {
   std::string path;
   std::string text;
+  std::optional<char> decimal = {};  ///< sign of its numbers, as the user says; absent = the numbers tell
 };
 
 /// What the user says of a file, by the options of `volcal import`; absent = not said.
@@ -77,7 +78,8 @@ class ImportFormat {
 };
 
 std::span<const ImportFormat* const> import_formats();
-/// The format of that name, or without a name the first that recognises the file. Throws InputError.
+/// The format of that name, or without a name the first that recognises the file; of a table that none does,
+/// the one for any table, which says the line that is wrong. Throws InputError.
 const ImportFormat& import_format_of(const ImportSource& source, const std::optional<std::string>& name);
 
 /// Throws InputError: the file does not say WHAT; `option` answers it.
@@ -90,6 +92,13 @@ void require_choice(const std::string& option, const std::string& value,
 /// neither moves nor stands in `at`, and for one in `at` that the machine lacks.
 void add_standing_axes(const ImportSource& source, const ImportAnswers& answers, const Machine& machine,
                        const std::vector<AxisName>& moving, ImportedReadings& readings);
+bool varies(const std::vector<double>& positions);
+/// What `--at` adds to the positions of an axis that a table lists, mm or deg; 0 = nothing. Throws InputError
+/// where the axis does not move.
+double shift_of(AxisName axis, const std::vector<double>& positions, const SourcePlace& place,
+                const ImportAnswers& answers);
+/// "120 mm added to its positions": what `--at` does to an axis that moves.
+std::string shift_text(AxisName axis, double shift);
 /// Unit of a length, "um", or of an angle, "arcsec", "gon": SI per unit. Nothing where the name is none.
 std::optional<double> length_unit(std::string_view name);
 std::optional<double> angle_unit(std::string_view name);

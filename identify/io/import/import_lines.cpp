@@ -6,7 +6,16 @@
 #include <cctype>
 #include <cmath>
 
+#include "volcal/model/description/errors.h"
+
 namespace volcal {
+namespace {
+
+constexpr std::size_t kDigitsOfThousands = 3;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+}  // namespace
 
 std::string_view without_blanks(std::string_view text) {
   const std::size_t start = text.find_first_not_of(" \t\r");
@@ -58,10 +67,63 @@ std::optional<double> foreign_number(std::string_view text) {
   return foreign_number(text, comma ? ',' : '.');
 }
 
+std::optional<double> grouped_number(std::string_view text, char decimal) {
+  const char separator = decimal == '.' ? ',' : '.';
+  const std::string_view whole = text.substr(0, text.find(decimal));
+  std::size_t digits = 0, groups = 0;
+  std::string plain;
+  for (const char c : whole) {
+    const bool ends_group = c == separator;
+    if (ends_group && (digits == 0 || digits > kDigitsOfThousands)) return std::nullopt;
+    if (ends_group && groups > 0 && digits != kDigitsOfThousands) return std::nullopt;
+    groups += ends_group ? 1 : 0;
+    digits = ends_group ? 0 : digits + (is_digit(c) ? 1 : 0);
+    if (!ends_group) plain += c;
+  }
+  if (groups > 0 && digits != kDigitsOfThousands) return std::nullopt;
+  return foreign_number(plain + std::string(text.substr(whole.size())), decimal);
+}
+
+bool may_hold_thousands(std::string_view text) {
+  if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos || comma == 0 || comma > kDigitsOfThousands) return false;
+  const std::string_view behind = text.substr(comma + 1);
+  return text[0] != '0' && behind.size() == kDigitsOfThousands && std::ranges::all_of(behind, is_digit) &&
+         std::ranges::all_of(text.substr(0, comma), is_digit);
+}
+
+void SeenSigns::add(std::string_view number, int line) {
+  if (number.find('.') != std::string_view::npos && point_line_ == 0) point_line_ = line;
+  if (number.find(',') == std::string_view::npos) return;
+  if (comma_line_ == 0) comma_line_ = line;
+  if (!may_hold_thousands(number)) {
+    comma_is_decimal_ = true;
+  } else if (thousands_.empty()) {
+    thousands_ = std::string(number);
+  }
+}
+
+char SeenSigns::decimal(const std::string& file) const {
+  if (comma_line_ == 0) return '.';
+  if (point_line_ > 0)
+    throw InputError({file, std::max(comma_line_, point_line_)},
+                     "decimal commas and decimal points stand in one file, first in lines " +
+                         std::to_string(comma_line_) + " and " + std::to_string(point_line_),
+                     "export it with one decimal sign; where one of the two separates thousands, give "
+                     "--decimal point or comma");
+  if (!comma_is_decimal_)
+    throw InputError({file, comma_line_},
+                     "\"" + thousands_ +
+                         "\" may be a number with three decimals or with a separator of thousands; every "
+                         "comma of the file stands so",
+                     "give --decimal comma or --decimal point");
+  return ',';
+}
+
 std::optional<int> whole_number(std::string_view text) {
   constexpr std::size_t kMostDigits = 6;
-  const bool digits = std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
-  if (text.empty() || text.size() > kMostDigits || !digits) return std::nullopt;
+  if (text.empty() || text.size() > kMostDigits || !std::ranges::all_of(text, is_digit)) return std::nullopt;
   int value = 0;
   for (const char c : text) value = 10 * value + (c - '0');
   return value;

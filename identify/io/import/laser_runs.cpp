@@ -84,7 +84,8 @@ class LaserReadings {
     take_passes(factor, kind == LineReading::Rotation ? "angle_urad" : "deviation_um");
     add_standing_axes(source_, answers_, machine_, {axis_}, readings_);
     add_temperatures();
-    if (laser_.decimal_comma) add_fact("decimal sign", "comma", "the numbers");
+    if (laser_.decimal_comma)
+      add_fact("decimal sign", "comma", source_.decimal ? "--decimal" : "the numbers");
     add_words();
     return std::move(readings_);
   }
@@ -309,7 +310,7 @@ class RtlFormat final : public ImportFormat {
   }
   ImportedReadings read(const ImportSource& source, const ImportAnswers& answers, const Machine& machine,
                         std::size_t /*tool*/) const override {
-    return laser_readings(parse_rtl(source.text, source.path), source, answers, machine);
+    return laser_readings(parse_rtl(source), source, answers, machine);
   }
 };
 

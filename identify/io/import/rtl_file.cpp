@@ -21,10 +21,11 @@ std::string rtl_section(std::string_view line) {
 
 class RtlParser {
  public:
-  explicit RtlParser(const std::string& file) : file_(file) {}
+  explicit RtlParser(const ImportSource& source) : file_(source.path), decimal_(source.decimal) {}
 
   LaserFile parse(const std::string& text) {
     for (const TextLine& line : lines_with_text(text)) read(line);
+    laser_.decimal_comma = decimal_.value_or(signs_.decimal(file_)) == ',';
     check_targets();
     make_passes();
     return std::move(laser_);
@@ -83,7 +84,7 @@ class RtlParser {
   bool read_targets(std::string_view text, int line) {
     if (text.find(':') != std::string_view::npos) return false;
     for (const std::string_view word : words_between_blanks(text)) {
-      const auto value = number(word);
+      const auto value = number(word, line);
       if (!value)
         fail(line, "the target \"" + printable(std::string(word)) + "\" is not a number", "positions in mm");
       laser_.targets_mm.push_back(*value);
@@ -96,15 +97,15 @@ class RtlParser {
     if (line.text.ends_with(':') && readings_.empty()) return;  // the heading "Run Target Data:"
     if (words.size() != 3) fail_not_understood(line, "a row is run, target and deviation");
     const auto run = whole_number(words[0]), target = whole_number(words[1]);
-    const auto value = number(words[2]);
+    const auto value = number(words[2], line.number);
     if (!run || !target || !value) fail_not_understood(line, "a row is run, target and deviation");
     readings_.push_back({*run, *target, *value, line.number});
   }
 
-  std::optional<double> number(std::string_view word) {
-    const auto value = foreign_number(word);
-    if (value && word.find(',') != std::string_view::npos) laser_.decimal_comma = true;
-    return value;
+  std::optional<double> number(std::string_view word, int line) {
+    if (decimal_) return grouped_number(word, *decimal_);
+    signs_.add(word, line);
+    return foreign_number(word);
   }
 
   void check_targets() const {
@@ -193,6 +194,8 @@ class RtlParser {
   }
 
   const std::string& file_;
+  std::optional<char> decimal_;
+  SeenSigns signs_;
   std::string section_;
   bool in_targets_ = false;
   int targets_line_ = 0;
@@ -211,6 +214,6 @@ const LaserEntry* LaserFile::find(const std::vector<std::string>& keys) const {
   return nullptr;
 }
 
-LaserFile parse_rtl(const std::string& text, const std::string& file) { return RtlParser(file).parse(text); }
+LaserFile parse_rtl(const ImportSource& source) { return RtlParser(source).parse(source.text); }
 
 }  // namespace volcal

@@ -46,7 +46,7 @@ struct LaserFile {
 };
 
 /// Throws InputError with the line of what is not understood, of a run that is not complete, of counts that
-/// do not fit.
-LaserFile parse_rtl(const std::string& text, const std::string& file);
+/// do not fit, of a decimal sign that stays open (SeenSigns).
+LaserFile parse_rtl(const ImportSource& source);
 
 }  // namespace volcal

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "volcal/identify/io/import/import_lines.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"
 
@@ -13,6 +14,7 @@ namespace volcal {
 namespace {
 
 constexpr std::ptrdiff_t kMostColumns = 10000;
+constexpr double kLeastShareOfNumbers = 0.5;  // of the cells of a text that resembles a table
 constexpr std::array kDelimiters = {'\t', ';', ',', '|', ' '};
 
 std::vector<std::string> quoted_cells(std::string_view line, char delimiter) {
@@ -43,24 +45,29 @@ std::size_t marker_length(std::string_view line) {
   return line.starts_with('#') || line.starts_with('!') ? 1 : 0;
 }
 
-bool is_number(const std::string& cell) { return foreign_number(cell).has_value(); }
+/// With the decimal sign that the user says, or with either.
+std::optional<double> number_in(const std::string& cell, std::optional<char> decimal) {
+  return decimal ? grouped_number(cell, *decimal) : foreign_number(cell);
+}
 
-std::size_t count_of_numbers(const std::vector<std::string>& cells) {
-  return static_cast<std::size_t>(std::ranges::count_if(cells, is_number));
+std::size_t count_of_numbers(const std::vector<std::string>& cells, std::optional<char> decimal) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      cells, [&](const std::string& cell) { return number_in(cell, decimal).has_value(); }));
 }
 
 /// Rows with numbers by one delimiter, of the number of cells that fits best.
 struct SplitTable {
   std::size_t columns = 0;
+  std::size_t rows = 0;
   double score = 0.0;  ///< cells that are numbers, times their share
 };
 
-SplitTable split_table(const std::vector<TextLine>& lines, char delimiter) {
+SplitTable split_table(const std::vector<TextLine>& lines, char delimiter, std::optional<char> decimal) {
   std::map<std::size_t, std::pair<std::size_t, std::size_t>> by_count;  // rows, numbers
   for (const TextLine& line : lines) {
     if (std::ranges::count(line.text, delimiter) > kMostColumns) continue;
     const auto cells = cells_of(line.text, delimiter);
-    const std::size_t count = count_of_numbers(cells);
+    const std::size_t count = count_of_numbers(cells, decimal);
     if (count == 0) continue;
     auto& [rows, numbers] = by_count[cells.size()];
     ++rows;
@@ -70,7 +77,7 @@ SplitTable split_table(const std::vector<TextLine>& lines, char delimiter) {
   for (const auto& [columns, counts] : by_count) {
     const double numbers = static_cast<double>(counts.second);
     const double score = numbers * numbers / static_cast<double>(columns * counts.first);
-    if (columns >= 2 && score > best.score) best = {columns, score};
+    if (columns >= 2 && score > best.score) best = {columns, counts.first, score};
   }
   return best;
 }
@@ -82,8 +89,8 @@ bool is_unit_cell(const std::string& cell) {
 
 class LayoutGuess {
  public:
-  LayoutGuess(const std::string& text, const std::string& file) : file_(file) {
-    for (const TextLine& line : lines_with_text(text)) {
+  explicit LayoutGuess(const ImportSource& source) : file_(source.path), decimal_(source.decimal) {
+    for (const TextLine& line : lines_with_text(source.text)) {
       lines_.push_back(line);
       if (marker_length(line.text) == 0) content_.push_back(line);
     }
@@ -100,10 +107,12 @@ class LayoutGuess {
   }
 
  private:
+  bool is_number(const std::string& cell) const { return number_in(cell, decimal_).has_value(); }
+
   void choose_delimiter() {
     double best = 0.0;
     for (const char delimiter : kDelimiters) {
-      const SplitTable split = split_table(content_, delimiter);
+      const SplitTable split = split_table(content_, delimiter, decimal_);
       if (split.score <= best) continue;
       best = split.score;
       layout_.delimiter = delimiter;
@@ -120,7 +129,7 @@ class LayoutGuess {
     std::size_t rows = 0;
     for (const TextLine& line : content_) {
       const auto cells = cells_of(line.text, layout_.delimiter);
-      if (cells.size() != columns_ || count_of_numbers(cells) == 0) continue;
+      if (cells.size() != columns_ || count_of_numbers(cells, decimal_) == 0) continue;
       ++rows;
       for (std::size_t k = 0; k < columns_; ++k) numbers[k] += is_number(cells[k]) ? 1 : 0;
     }
@@ -151,7 +160,7 @@ class LayoutGuess {
   std::vector<std::string> header_cells(std::size_t i) const {
     const std::string_view text = lines_[i].text;
     auto cells = cells_of(without_blanks(text.substr(marker_length(text))), layout_.delimiter);
-    if (cells.size() != columns_ || count_of_numbers(cells) > 0) cells.clear();
+    if (cells.size() != columns_ || count_of_numbers(cells, decimal_) > 0) cells.clear();
     return cells;
   }
 
@@ -200,29 +209,29 @@ class LayoutGuess {
   [[noreturn]] void fail_number(const TextLine& line, std::size_t column, const std::string& cell) const {
     const std::string name =
         layout_.header.empty() ? std::to_string(column + 1) : "\"" + layout_.header[column] + "\"";
-    throw InputError({file_, line.number},
-                     "column " + printable(name) + " holds \"" + printable(cell) + "\", not a number",
-                     "plain numbers without units or separators of thousands are expected");
+    throw InputError(
+        {file_, line.number},
+        "column " + printable(name) + " holds \"" + printable(cell) + "\", not a number",
+        "plain numbers without units are expected; where they have separators of thousands, give "
+        "--decimal point or comma");
   }
 
   void choose_decimal() {
-    int comma_line = 0, point_line = 0;
+    if (decimal_) {
+      layout_.decimal = *decimal_;
+      return;
+    }
+    SeenSigns seen;
     for (const TableRow& row : layout_.rows) {
       for (std::size_t k = 0; k < columns_; ++k) {
-        if (!layout_.numeric[k]) continue;
-        if (row.cells[k].find(',') != std::string::npos && comma_line == 0) comma_line = row.line;
-        if (row.cells[k].find('.') != std::string::npos && point_line == 0) point_line = row.line;
+        if (layout_.numeric[k]) seen.add(row.cells[k], row.line);
       }
     }
-    if (comma_line > 0 && point_line > 0)
-      throw InputError({file_, std::max(comma_line, point_line)},
-                       "decimal commas and decimal points stand in one file, first in lines " +
-                           std::to_string(comma_line) + " and " + std::to_string(point_line),
-                       "export it with one decimal sign");
-    layout_.decimal = comma_line > 0 ? ',' : '.';
+    layout_.decimal = seen.decimal(file_);
   }
 
   const std::string& file_;
+  std::optional<char> decimal_;
   std::vector<TextLine> lines_, content_;
   std::size_t columns_ = 0;
   TableLayout layout_;
@@ -231,11 +240,18 @@ class LayoutGuess {
 }  // namespace
 
 double TableLayout::number(const TableRow& row, std::size_t column) const {
-  return foreign_number(row.cells.at(column), decimal).value_or(0.0);
+  return grouped_number(row.cells.at(column), decimal).value_or(0.0);
 }
 
-TableLayout guess_table_layout(const std::string& text, const std::string& file) {
-  return LayoutGuess(text, file).guess();
+TableLayout guess_table_layout(const ImportSource& source) { return LayoutGuess(source).guess(); }
+
+bool resembles_table(const ImportSource& source) {
+  const std::vector<TextLine> lines = lines_with_text(source.text);
+  return std::ranges::any_of(kDelimiters, [&](char delimiter) {
+    const SplitTable split = split_table(lines, delimiter, source.decimal);
+    const double cells = static_cast<double>(split.columns * split.rows);
+    return split.rows >= 2 && split.score >= kLeastShareOfNumbers * kLeastShareOfNumbers * cells;
+  });
 }
 
 std::string lines_beside(const TableLayout& layout) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/io/import/import_format.h"
 #include "volcal/identify/io/import/import_lines.h"
 
 namespace volcal {
@@ -27,10 +28,14 @@ struct TableLayout {
   double number(const TableRow& row, std::size_t column) const;
 };
 
-/// Lines that begin with #, // or ! are comments. `text` must outlive the layout. Throws InputError: no
-/// table, a row with other cells than the others, text where the column has numbers, decimal commas and
-/// points in one file.
-TableLayout guess_table_layout(const std::string& text, const std::string& file);
+/// Lines that begin with #, // or ! are comments. `source` must outlive the layout. Throws InputError: no
+/// table, a row with other cells than the others, text where the column has numbers, a decimal sign that
+/// stays open (SeenSigns).
+TableLayout guess_table_layout(const ImportSource& source);
+
+/// Whether half of the cells of two rows or more are numbers: what cannot be read of such a text is said with
+/// its line.
+bool resembles_table(const ImportSource& source);
 
 /// "3 lines, first "..."" of what stands beside the header and the rows; empty = nothing.
 std::string lines_beside(const TableLayout& layout);

@@ -95,7 +95,7 @@ class NominalPoints {
  public:
   NominalPoints(const ImportSource& source, const ImportAnswers& answers, const Machine& machine)
       : path_(source.path) {
-    const TableLayout layout = guess_table_layout(source.text, path_);
+    const TableLayout layout = guess_table_layout(source);
     std::vector<std::size_t> name;
     for (std::size_t k = 0; k < layout.header.size(); ++k) {
       if (!layout.numeric[k] || names_points(header_words(layout.header[k]))) name.push_back(k);
@@ -104,10 +104,12 @@ class NominalPoints {
       throw InputError({path_, layout.header_line}, "no column names the points",
                        "a header as name,x_mm,y_mm,z_mm is expected");
     for (const Axis& axis : machine.axes) find_axis(axis.name, layout, answers);
+    for (const auto& [axis, column] : column_) find_shift(axis, column, layout, answers);
     for (const TableRow& row : layout.rows) {
       AxisPosition position{};
       for (const auto& [axis, column] : column_)
-        position[index_of(axis)] = layout.number(row, column) * position_unit(axis).si_per_unit;
+        position[index_of(axis)] =
+            (layout.number(row, column) + shift_[axis]) * position_unit(axis).si_per_unit;
       for (const auto& [axis, value] : standing_)
         position[index_of(axis)] = value * position_unit(axis).si_per_unit;
       if (!position_.emplace(name_of_point(row, name), position).second)
@@ -126,6 +128,8 @@ class NominalPoints {
     return found->second;
   }
   std::size_t size() const { return position_.size(); }
+  /// By `--at`, of axes that move, mm or deg.
+  const std::map<AxisName, double>& shift() const { return shift_; }
 
  private:
   void find_axis(AxisName axis, const TableLayout& layout, const ImportAnswers& answers) {
@@ -144,9 +148,16 @@ class NominalPoints {
     }
   }
 
+  void find_shift(AxisName axis, std::size_t column, const TableLayout& layout,
+                  const ImportAnswers& answers) {
+    std::vector<double> positions;
+    for (const TableRow& row : layout.rows) positions.push_back(layout.number(row, column));
+    shift_[axis] = shift_of(axis, positions, {path_, layout.rows.front().line}, answers);
+  }
+
   std::string path_;
   std::map<AxisName, std::size_t> column_;
-  std::map<AxisName, double> standing_;
+  std::map<AxisName, double> standing_, shift_;
   std::map<std::string, AxisPosition> position_;
 };
 
@@ -158,7 +169,7 @@ class TrackerPoints {
         answers_(answers),
         machine_(machine),
         tool_(tool),
-        layout_(guess_table_layout(source.text, source.path)) {}
+        layout_(guess_table_layout(source)) {}
 
   ImportedReadings read() {
     find_columns();
@@ -347,6 +358,9 @@ class TrackerPoints {
     for (auto& [axis, values] : columns)
       readings_.columns.push_back({position_column(axis), std::move(values)});
     add_fact("commanded positions", std::to_string(nominal.size()) + " points", "--nominal");
+    for (const auto& [axis, shift] : nominal.shift()) {
+      if (shift != 0.0) add_fact(std::string(1, letter_of(axis)), shift_text(axis, shift), "--at");
+    }
     return points_w;
   }
 
@@ -442,7 +456,7 @@ class TrackerPointsFormat final : public ImportFormat {
   }
   bool recognises(const ImportSource& source) const override {
     try {
-      const TableLayout layout = guess_table_layout(source.text, source.path);
+      const TableLayout layout = guess_table_layout(source);
       const auto numbers = std::ranges::count(layout.numeric, true);
       const bool named = numbers < static_cast<std::ptrdiff_t>(layout.numeric.size());
       if (layout.header.empty()) return named && numbers == 3;

@@ -121,6 +121,19 @@ TEST_F(ImportedCampaign, WhatIsNoFileOfAnInstrumentIsRefusedWithItsLine) {
               HasSubstr("did you mean \"rtl\"?"));
 }
 
+TEST_F(ImportedCampaign, ATableThatCannotBeReadIsRefusedWithItsLine) {
+  const auto message = [](const std::string& text) {
+    const ImportSource source{"t.csv", text};
+    return refusal([&] { import_format_of(source, std::nullopt).read(source, {}, import_machine(), 0); });
+  };
+  for (const char* cell : {"", "nan", "1.234,5"}) {
+    EXPECT_THAT(message("X;Error\n0;1\n" + std::string(cell) + ";2\n200;3\n"),
+                HasSubstr("t.csv:3: column \"X\" holds \"" + std::string(cell) + "\", not a number"));
+  }
+  EXPECT_THAT(message("0;1\n100;2\n"), HasSubstr("t.csv:1: no header above the numbers"));
+  EXPECT_THAT(message("X;Error\n0;1\n100\n200;3\n"), HasSubstr("t.csv:3: the row has 1 cells"));
+}
+
 TEST_F(ImportedCampaign, ACodePageIsNamedInTheRemedy) {
   const std::string bytes = testing::replaced(testing::rtl_text(), "By: NN", "By: M\xFCller");
   const auto read = [&](std::optional<TextEncoding> encoding) {

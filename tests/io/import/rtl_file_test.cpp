@@ -25,12 +25,12 @@ using testing::sorted_rtl_text;
 std::string laser_refusal(const std::string& text, const ImportAnswers& answers = rtl_answers()) {
   return refusal([&] {
     const ImportSource source{"x.rtl", text};
-    laser_readings(parse_rtl(text, "x.rtl"), source, answers, import_machine());
+    laser_readings(parse_rtl(source), source, answers, import_machine());
   });
 }
 
 ImportedReadings laser_import(const std::string& text, const ImportAnswers& answers = rtl_answers()) {
-  return laser_readings(parse_rtl(text, "x.rtl"), {"x.rtl", text}, answers, import_machine());
+  return laser_readings(parse_rtl({"x.rtl", text}), {"x.rtl", text}, answers, import_machine());
 }
 
 const std::vector<double>& laser_column(const ImportedReadings& readings, const std::string& name) {
@@ -43,7 +43,7 @@ const std::vector<double>& laser_column(const ImportedReadings& readings, const 
 }
 
 TEST(RtlFile, SectionsTargetsAndRuns) {
-  const LaserFile laser = parse_rtl(rtl_text(), "x.rtl");
+  const LaserFile laser = parse_rtl({"x.rtl", rtl_text()});
   EXPECT_THAT(laser.targets_mm, ElementsAre(0.0, 100.0, 200.0));
   ASSERT_THAT(laser.passes, SizeIs(4));
   EXPECT_TRUE(laser.passes[0].ascending);
@@ -107,6 +107,27 @@ TEST(RtlFile, TargetsAreShiftedByThePositionOfTheAxis) {
   ImportAnswers answers = rtl_answers();
   answers.at[AxisName::X] = 50.0;
   EXPECT_EQ(laser_column(laser_import(rtl_text(), answers), "x_mm")[2], 250.0);
+}
+
+/// The last target is 200,000: 200 mm, or two hundred metres.
+TEST(RtlFile, AnOpenDecimalSignIsAskedFor) {
+  const std::string runs = "RUNS::\nRun-count: 1\nDEVIATIONS::\nRun Target Data:\n1 1 2\n1 2 3\n1 3 -3\n";
+  const std::string text = replaced(replaced(std::string(testing::kRtlHead), "0.000  100.000", "0  100,000"),
+                                    "200.000", "200,000") +
+                           runs;
+  EXPECT_THAT(refusal([&] {
+                parse_rtl({"x.rtl", text});
+              }),
+              HasSubstr("give --decimal comma or --decimal point"));
+  EXPECT_THAT(parse_rtl({"x.rtl", text, ','}).targets_mm, ElementsAre(0.0, 100.0, 200.0));
+  EXPECT_TRUE(parse_rtl({"x.rtl", text, ','}).decimal_comma);
+  EXPECT_THAT(parse_rtl({"x.rtl", text, '.'}).targets_mm, ElementsAre(0.0, 1e5, 2e5));
+  EXPECT_THAT(parse_rtl({"x.rtl", replaced(text, "1 2 3", "1 2 0,5")}).targets_mm,
+              ElementsAre(0.0, 100.0, 200.0));
+  EXPECT_THAT(refusal([&] {
+                parse_rtl({"x.rtl", replaced(text, "1 2 3", "1 2 0.5")});
+              }),
+              HasSubstr("decimal commas and decimal points stand in one file"));
 }
 
 TEST(RtlFile, WhatTheFileDoesNotSayIsAskedFor) {

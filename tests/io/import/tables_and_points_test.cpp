@@ -27,6 +27,18 @@ class TablesAndPoints : public ::testing::Test {
     const ImportSource source{"t.txt", text};
     return import_format_of(source, format).read(source, answers, import_machine(), 0);
   }
+  static std::string key(const ImportedReadings& readings, const std::string& name) {
+    const auto found = readings.keys.find(name);
+    return found == readings.keys.end() ? "" : found->second;
+  }
+  static ImportedReadings import_at(const Machine& machine, const std::string& text,
+                                    const std::map<AxisName, double>& at) {
+    ImportAnswers answers;
+    answers.instrument = "displacement";
+    answers.at = at;
+    const ImportSource source{"t.txt", text};
+    return import_format_of(source, "csv").read(source, answers, machine, 0);
+  }
   std::string refused(const std::string& text, const ImportAnswers& answers, const char* format = "csv",
                       const std::string& nominal = testing::kNominalPoints) const {
     return refusal([&] { import(text, answers, format, nominal); });
@@ -70,18 +82,18 @@ TEST_F(TablesAndPoints, LayoutOfTables) {
       {"\"a;b\";c\n1;2\n", ';', '.', 1, {"1", "2"}},
       {"P1 1 2 3\nP2 4 5 6\n", ' ', '.', 0, {"P1", "1", "2", "3"}}};
   for (const Case& one : cases) {
-    const TableLayout layout = guess_table_layout(one.text, "t.csv");
+    const TableLayout layout = guess_table_layout({"t.csv", one.text});
     EXPECT_EQ(layout.delimiter, one.delimiter) << one.text;
     EXPECT_EQ(layout.decimal, one.decimal) << one.text;
     EXPECT_EQ(layout.header_line, one.header_line) << one.text;
     EXPECT_EQ(layout.rows.at(0).cells, one.first) << one.text;
   }
-  EXPECT_THAT(guess_table_layout("a;b\n[mm];[um]\n1;2\n", "t.csv").header, ElementsAre("a [mm]", "b [um]"));
+  EXPECT_THAT(guess_table_layout({"t.csv", "a;b\n[mm];[um]\n1;2\n"}).header, ElementsAre("a [mm]", "b [um]"));
 }
 
 TEST_F(TablesAndPoints, DamagedTablesAreRefusedWithTheLine) {
   const auto layout = [](const std::string& text) {
-    return refusal([&] { guess_table_layout(text, "t.csv"); });
+    return refusal([&] { guess_table_layout({"t.csv", text}); });
   };
   EXPECT_THAT(layout("a;b;c\n1;2;3\n4;5\n6;7;8\n"),
               HasSubstr("t.csv:3: the row has 2 cells, the rows above 3"));
@@ -149,6 +161,91 @@ TEST_F(TablesAndPoints, WhatATableDoesNotSayIsAskedFor) {
               HasSubstr("t.txt:1: no column is understood as a reading"));
   EXPECT_THAT(refused("X [V];deviation_um\n1;2\n", answers), HasSubstr("t.txt:1: the unit \"V\""));
   EXPECT_THAT(refused("X;Position X;deviation_um\n1;2;3\n", answers), HasSubstr("t.txt:1:"));
+}
+
+/// Measured minus target, whichever end the list begins at; by --set, on a diagonal and of displacements the
+/// direction is another's.
+TEST_F(TablesAndPoints, DeviationsAreReadAlongThePlusOfTheAxis) {
+  const std::map<AxisName, double> at = {{AxisName::Y, 250.0}, {AxisName::Z, 150.0}};
+  const std::string head = "X;deviation_um\n";
+  for (const char* rows : {"0;0\n100;5\n200;10\n", "200;10\n100;5\n0;0\n", "200;10\n0;0\n200;10\n"}) {
+    const ImportedReadings readings = import_at(import_machine(), head + rows, at);
+    EXPECT_EQ(key(readings, "direction"), "[1, 0, 0]") << rows;
+    EXPECT_EQ(fact(readings, "direction"), "along + of X <a deviation is measured minus target>");
+  }
+  ImportAnswers answers = sample(tables_, "standard.csv").answers;
+  EXPECT_EQ(key(import(sample(tables_, "standard.csv").bytes, answers), "direction"), "") << "said by --set";
+  EXPECT_EQ(
+      key(import_at(import_machine(), "X;Y;deviation_um\n0;0;1\n9;9;2\n", {{AxisName::Z, 0.0}}), "direction"),
+      "");
+  EXPECT_EQ(key(import_at(import_machine(), "X;displacement_mm\n9;0\n0;-9\n", at), "direction"), "");
+}
+
+/// C = 90 deg turns the tool relative to the workpiece: p_w = Rz(90 deg) p, so that + X goes along + y.
+TEST_F(TablesAndPoints, DirectionsAreThoseOfTheWorkpiece) {
+  const Machine machine =
+      parse_machine(testing::replaced(testing::kImportMachine, "w X' b Y Z t\"\n",
+                                      "w C' b X Y Z t\"\n[axes.C]\ntravel_deg = [-180.0, 180.0]\nhome_deg = "
+                                      "0.0\ncentre_mm = [0.0, 0.0, 0.0]\n"),
+                    "machine.toml");
+  const ImportedReadings readings = import_at(machine, "X;deviation_um\n200;2\n0;1\n",
+                                              {{AxisName::Y, 0.0}, {AxisName::Z, 0.0}, {AxisName::C, 90.0}});
+  EXPECT_EQ(key(readings, "direction"), "[0, 1, 0]");
+}
+
+TEST_F(TablesAndPoints, PositionsOfAnAxisThatMovesAreShifted) {
+  std::map<AxisName, double> at = {{AxisName::X, 50.0}, {AxisName::Y, 250.0}, {AxisName::Z, 150.0}};
+  const ImportedReadings readings = import_at(import_machine(), "X;deviation_um\n0;1\n100;2\n", at);
+  EXPECT_THAT(column(readings, "x_mm"), ElementsAre(50.0, 150.0));
+  EXPECT_EQ(fact(readings, "X"), "50 mm added to its positions <--at>");
+  EXPECT_THAT(refusal([&] { import_at(import_machine(), "X;Y;deviation_um\n0;9;1\n100;9;2\n", at); }),
+              HasSubstr("t.txt:2: the table says where Y stood, and so does --at (leave one of the two out"));
+  ImportAnswers answers = sample(lists_, "cartesian.txt").answers;
+  answers.at = {{AxisName::Z, 20.0}};
+  const ImportedReadings points = import(sample(lists_, "cartesian.txt").bytes, answers, "tracker");
+  EXPECT_THAT(column(points, "z_mm"), ElementsAre(20.0, 20.0, 20.0, 20.0, 120.0));
+  EXPECT_EQ(fact(points, "Z"), "20 mm added to its positions <--at>");
+}
+
+TEST_F(TablesAndPoints, ParallelAxesAreKnown) {
+  const Machine machine = parse_machine(
+      testing::replaced(testing::kImportMachine, "w X' b Y Z t\"\n",
+                        "w X' b Y Z W t\"\n[axes.W]\ntravel_mm = [0.0, 500.0]\nhome_mm = 0.0\n"),
+      "machine.toml");
+  const ImportedReadings readings = import_at(machine, "Position W [mm];deviation_um\n0;1\n100;2\n",
+                                              {{AxisName::X, 1.0}, {AxisName::Y, 2.0}, {AxisName::Z, 3.0}});
+  EXPECT_THAT(column(readings, "w_mm"), ElementsAre(0.0, 100.0));
+  EXPECT_EQ(key(readings, "direction"), "[0, 0, 1]");
+}
+
+TEST_F(TablesAndPoints, AColumnOfAnAxisThatIsNotReadIsToBeConfirmed) {
+  const ImportedReadings readings =
+      import_at(import_machine(), "x_mm,state y,deviation_um\n0,on,1\n100,on,2\n",
+                {{AxisName::Y, 2.0}, {AxisName::Z, 3.0}});
+  EXPECT_TRUE(readings.guessed);
+  EXPECT_EQ(fact(readings, "column \"state y\""), "not read: Y stands where --at says <guessed>");
+}
+
+TEST_F(TablesAndPoints, AnOpenDecimalSignIsAskedFor) {
+  const auto first_row = [](const std::string& rows, std::optional<char> decimal) {
+    const TableLayout layout = guess_table_layout({"t.csv", "a\tb\n" + rows, decimal});
+    return std::vector<double>{layout.number(layout.rows.back(), 0), layout.number(layout.rows.back(), 1)};
+  };
+  const std::string open = "0\t1\n500\t2\n1,000\t3\n";
+  EXPECT_THAT(
+      refusal([&] { first_row(open, std::nullopt); }),
+      HasSubstr("t.csv:4: \"1,000\" may be a number with three decimals or with a separator of "
+                "thousands; every comma of the file stands so (give --decimal comma or --decimal point)"));
+  EXPECT_THAT(first_row(open, '.'), ElementsAre(1000.0, 3.0));
+  EXPECT_THAT(first_row(open, ','), ElementsAre(1.0, 3.0));
+  EXPECT_THAT(first_row("0,000\t1\n1,000\t3\n", std::nullopt), ElementsAre(1.0, 3.0)) << "begins with 0,";
+  EXPECT_THAT(first_row("1,000\t-0,125\n", std::nullopt), ElementsAre(1.0, -0.125));
+  EXPECT_THAT(first_row("1,000\t2,5\n", std::nullopt), ElementsAre(1.0, 2.5));
+  EXPECT_THAT(first_row("1000,125\t2\n", std::nullopt), ElementsAre(1000.125, 2.0)) << "four digits lead";
+  EXPECT_THAT(first_row("1.234,5\t-1.234.567,25\n", ','), ElementsAre(1234.5, -1234567.25));
+  EXPECT_THAT(refusal([&] { first_row("1\t2\n1,00\t3\n3\t4\n", '.'); }), HasSubstr("t.csv:3:"));
+  EXPECT_THAT(refusal([&] { first_row("1\t2\n1.234,5\t3\n3\t4\n", std::nullopt); }),
+              HasSubstr("t.csv:3: column \"a\" holds \"1.234,5\", not a number"));
 }
 
 TEST_F(TablesAndPoints, PolarListsGiveTheStation) {

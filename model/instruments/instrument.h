@@ -137,6 +137,9 @@ class BoundSetup {
                                const double* nuisance, LinearizationLanes& out) const;
   /// Whether readings depend on the tool's rotation, besides the point that it moves.
   virtual bool sees_rotation() const { return false; }
+  /// Whether the guesses of the nuisance parameters foresee sign and size of a channel's changes; where not,
+  /// readings are not judged by them.
+  virtual bool is_foreseen(int /*channel*/) const { return true; }
 
  protected:
   void set_channels(int channels) { channels_ = channels; }

@@ -58,23 +58,45 @@ Eigen::Vector3d cartesian(const Readings& readings, std::size_t row) {
                                   std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
 }
 
-/// Rotation that best turns station-frame points into workpiece directions (Kabsch 1976).
-Eigen::Matrix3d rotation_guess(const Readings& readings, const std::vector<Eigen::Vector3d>& points_w) {
-  Eigen::Vector3d mean_s = Eigen::Vector3d::Zero();
-  Eigen::Vector3d mean_w = Eigen::Vector3d::Zero();
-  for (std::size_t row = 0; row < points_w.size(); ++row) {
-    mean_s += cartesian(readings, row);
-    mean_w += points_w[row];
-  }
-  mean_s /= static_cast<double>(points_w.size());
-  mean_w /= static_cast<double>(points_w.size());
-  Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
-  for (std::size_t row = 0; row < points_w.size(); ++row) {
-    correlation += (points_w[row] - mean_w) * (cartesian(readings, row) - mean_s).transpose();
-  }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs(1.0, 1.0, (svd.matrixU() * svd.matrixV().transpose()).determinant());
+constexpr double kNarrow = 1e-3;        // width of a cloud of points that has none, of its length
+constexpr double kLeastWidth_m = 0.05;  // about the common direction of vectors from a guessed station
+
+struct RotationGuess {
+  Eigen::Matrix3d rotation_ws = Eigen::Matrix3d::Identity();
+  bool determined = true;
+};
+
+/// Rotation that best turns the columns of `from` into those of `to` (Kabsch 1976).
+Eigen::Matrix3d best_rotation(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(to * from.transpose(),
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Vector3d signs(1.0, 1.0, (svd.matrixU() * svd.matrixV().transpose()).determinant());
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
+Eigen::Matrix3Xd centred(const Eigen::Matrix3Xd& points) {
+  return points.colwise() - points.rowwise().mean();
+}
+
+/// Root mean square extents of columns about the origin, greatest first.
+Eigen::Vector3d extents(const Eigen::Matrix3Xd& points) {
+  const Eigen::Matrix3d moments = points * points.transpose() / static_cast<double>(points.cols());
+  return Eigen::JacobiSVD<Eigen::Matrix3d>(moments).singularValues().cwiseSqrt();
+}
+
+/// From points in the station's frame to workpiece directions. Points on one line leave a turn about it open,
+/// which their vectors from the station fix, unless these lie on the line, too.
+RotationGuess rotation_guess(const Readings& readings, const std::vector<Eigen::Vector3d>& points_w,
+                             const Eigen::Vector3d& station_w) {
+  Eigen::Matrix3Xd read_s(3, static_cast<Eigen::Index>(points_w.size())), nominal_w = read_s;
+  for (std::size_t row = 0; row < points_w.size(); ++row) {
+    read_s.col(static_cast<Eigen::Index>(row)) = cartesian(readings, row);
+    nominal_w.col(static_cast<Eigen::Index>(row)) = points_w[row];
+  }
+  const Eigen::Vector3d width = extents(centred(nominal_w));
+  if (width[1] > kNarrow * width[0]) return {best_rotation(centred(read_s), centred(nominal_w)), true};
+  const Eigen::Matrix3Xd from_station_w = nominal_w.colwise() - station_w;
+  return {best_rotation(read_s, from_station_w), extents(from_station_w)[1] > kLeastWidth_m};
 }
 
 class LaserTrackerSetup final : public EquationBase<LaserTrackerSetup> {
@@ -83,7 +105,9 @@ class LaserTrackerSetup final : public EquationBase<LaserTrackerSetup> {
     const Setup& setup = context.setup;
     set_channels(3);
     station_guess_w_ = *setup.options.vector("station");
-    rotation_ws_ = rotation_guess(setup.readings, nominal_point_w_);
+    const RotationGuess guess = rotation_guess(setup.readings, nominal_point_w_, station_guess_w_);
+    rotation_ws_ = guess.rotation_ws;
+    is_turned_ = guess.determined;
     azimuth_ = setup.readings.value[1];
     add_nuisance(point_nuisance(station_parameter(setup.options.text("station").value_or(setup.name)),
                                 station_guess_w_, setup.options.number("station_sigma").value_or(0.0)));
@@ -137,6 +161,8 @@ class LaserTrackerSetup final : public EquationBase<LaserTrackerSetup> {
     }
   }
 
+  bool is_foreseen(int channel) const override { return channel == 0 || is_turned_; }
+
   double noise_length(std::size_t row, int channel) const override {
     return channel == 0 ? (nominal_point_w_[row] - station_guess_w_).norm() : 0.0;
   }
@@ -189,6 +215,7 @@ class LaserTrackerSetup final : public EquationBase<LaserTrackerSetup> {
   std::vector<double> azimuth_;
   Eigen::Vector3d station_guess_w_;
   Eigen::Matrix3d rotation_ws_;
+  bool is_turned_ = true;  ///< the guess of the rotation is determined
   bool has_scale_ = false;
 };
 

@@ -178,6 +178,7 @@ void check_units(const Campaign& campaign, const Setup& setup, std::vector<Eigen
   }
   const auto& columns = instrument.schema().column_sets[setup.readings.column_set];
   for (std::size_t channel = 0; channel < predicted.size(); ++channel) {
+    if (!bound->is_foreseen(static_cast<int>(channel))) continue;
     const std::string& column = columns[channel].column;
     const std::string_view unit = unit_of_key(column).suffix;
     const double least = unit == "mm" || unit == "um" || unit == "m" ? kLeastLength : kLeastAngle;

@@ -37,7 +37,10 @@ class Compensation {
   CompensationType type() const { return type_; }
   /// Added to the commands of X, Y, Z; m.
   Eigen::Vector3d correction(const AxisPosition& position, const ApproachDirection& direction) const;
-  /// The share of it that depends on one axis alone: all of L-POS, L-STR and L-SQU. direction -1, 0, +1.
+  /// The error that the type is about, m, with the components along which no axis moves.
+  Eigen::Vector3d error_of_type(const AxisPosition& position, const ApproachDirection& direction) const;
+  /// The share of the correction that depends on one axis alone: all of L-POS, L-STR and L-SQU. direction -1,
+  /// 0, +1.
   Eigen::Vector3d along_axis(AxisName axis, double q, int direction) const;
   /// Angle between axes i and k on their specific lines beyond 90 degrees, s_ki + s_ik, rad.
   double squareness(AxisName i, AxisName k) const;
@@ -56,7 +59,6 @@ class Compensation {
   void set_squareness(const Machine& machine);
   const Line* find_line(AxisName axis) const;
   Eigen::Vector3d error_along(const Line& line, double q, int direction) const;
-  Eigen::Vector3d error_of_type(const AxisPosition& position, const ApproachDirection& direction) const;
 
   CompensationType type_;
   DisplacementField errors_;

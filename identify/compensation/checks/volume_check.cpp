@@ -32,11 +32,27 @@ DisplacementField corrected(const DisplacementField& errors, const Compensation&
   };
 }
 
-/// The part of a field that a type would correct.
+/// The part of a field that a type is about.
 DisplacementField part_of(const Compensation& type) {
   return [&type](const AxisPosition& position, const ApproachDirection& direction) {
-    return Eigen::Vector3d(-type.correction(position, direction));
+    return type.error_of_type(position, direction);
   };
+}
+
+/// What an ideal correction of every component that an axis moves would leave.
+std::optional<FixedLeft> fixed_left(const Machine& machine, const std::vector<VolumePoint>& points,
+                                    const DisplacementField& errors) {
+  const Eigen::Vector3d fixed = Eigen::Vector3d::Ones() - movable_directions(machine);
+  if (fixed.isZero()) return std::nullopt;
+  FixedLeft left;
+  for (const AxisName axis : kLinearAxes) {
+    if (fixed[direction_of(axis)] != 0.0) left.axes.push_back(axis);
+  }
+  left.error =
+      error_left(machine, points, [&](const AxisPosition& position, const ApproachDirection& direction) {
+        return Eigen::Vector3d(errors(position, direction).cwiseProduct(fixed));
+      });
+  return left;
 }
 
 /// 5, 2 and 1 x 10^n up to `longest`, coarse to fine, m.
@@ -89,13 +105,12 @@ std::vector<VolumePoint> over_parallel_axes(const Machine& machine, std::vector<
 
 ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& points,
                      const DisplacementField& errors) {
-  const Eigen::Vector3d movable = movable_directions(machine);
   std::vector<Eigen::Vector3d> places, vectors;
   const auto add = [&](bool inside) {
     for (const VolumePoint& point : points) {
       if (point.inside != inside) continue;
       places.push_back(place_of(machine, point.position));
-      vectors.emplace_back(errors(point.position, point.direction).cwiseProduct(movable));
+      vectors.push_back(errors(point.position, point.direction));
     }
   };
   add(true);
@@ -214,6 +229,7 @@ VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& o
     check.parts.push_back({part, error_left(machine, points, part_of(of_before)),
                            error_left(machine, points, part_of(of_exported))});
   }
+  check.fixed = fixed_left(machine, points, measured);
   check.identification_u = identification_uncertainty(result, options, points);
   check.over_conditions = left_over_conditions(result, options, correction, points);
   if (!machine.parallel_axes().empty()) {

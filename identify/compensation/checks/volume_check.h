@@ -32,6 +32,12 @@ struct ParallelLeft {
   ErrorLeft exported;
 };
 
+/// Components along which no linear axis moves.
+struct FixedLeft {
+  std::vector<AxisName> axes;  ///< X, Y, Z that the machine lacks
+  ErrorLeft error;             ///< with every other component corrected
+};
+
 /// Parallel axes U, V, W are at home, but for `over_parallel`.
 struct VolumeCheck {
   int places = 0;  ///< of the volume, each approached from both sides of every axis
@@ -39,6 +45,7 @@ struct VolumeCheck {
   ErrorLeft ideal;     ///< ideal compensation of the type
   ErrorLeft exported;  ///< the tables
   std::vector<PartLeft> parts;
+  std::optional<FixedLeft> fixed;  ///< none where axes move along X, Y and Z
   /// Standard uncertainty of the errors as identified, RMS over the volume (volume_uncertainty.h), m.
   double identification_u = 0.0;
   /// RMS to be expected of the machine with the tables: what they leave of the identified errors, and the

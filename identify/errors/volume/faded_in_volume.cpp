@@ -13,8 +13,7 @@ constexpr double kSameSize = 1e-9;
 
 }  // namespace
 
-void FadedInVolume::add(const Eigen::Vector3d& place, std::span<const FadedError> errors,
-                        const Eigen::Vector3d& movable) {
+void FadedInVolume::add(const Eigen::Vector3d& place, std::span<const FadedError> errors) {
   ++points_;
   for (const FadedError& error : errors) {
     Surface& surface = surfaces_[error.parameter];
@@ -22,7 +21,7 @@ void FadedInVolume::add(const Eigen::Vector3d& place, std::span<const FadedError
     surface.least = surface.errors.empty() ? size : std::min(surface.least, size);
     surface.most = std::max(surface.most, size);
     surface.places.push_back(place);
-    surface.errors.emplace_back(error.u.head<3>().cwiseProduct(movable));
+    surface.errors.emplace_back(error.u.head<3>());
   }
 }
 

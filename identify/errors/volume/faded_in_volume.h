@@ -16,10 +16,9 @@ namespace volcal {
 /// that depends on a position nothing tells how it goes on from point to point: it counts as it is.
 class FadedInVolume {
  public:
-  /// `errors`: of all curves and surfaces at the point (ErrorField::faded_errors()); `movable` is 1 in the
-  /// directions that count. `place`: m, workpiece coordinates.
-  void add(const Eigen::Vector3d& place, std::span<const FadedError> errors,
-           const Eigen::Vector3d& movable = Eigen::Vector3d::Ones());
+  /// `errors`: of all curves and surfaces at the point (ErrorField::faded_errors()). `place`: m, workpiece
+  /// coordinates.
+  void add(const Eigen::Vector3d& place, std::span<const FadedError> errors);
 
   double mean_square() const;
   /// Of those whose first coefficient is among `parameters`.

@@ -16,6 +16,18 @@ std::vector<std::string> left_figures(const std::string& name, const ErrorLeft& 
   return {name, fixed_number(left.rms / kMicro, 2), fixed_number(left.max / kMicro, 2)};
 }
 
+std::vector<std::string> letters_of(const FixedLeft& fixed) {
+  std::vector<std::string> letters;
+  for (const AxisName axis : fixed.axes) letters.emplace_back(1, letter_of(axis));
+  return letters;
+}
+
+std::string fixed_left_text(const FixedLeft& fixed) {
+  return fmt::format("no axis moves along {}: {} um RMS of it, {} um max stay whatever the tables\n",
+                     fmt::join(letters_of(fixed), " and "), fixed_number(fixed.error.rms / kMicro, 2),
+                     fixed_number(fixed.error.max / kMicro, 2));
+}
+
 nlohmann::ordered_json left_json(const ErrorLeft& left) {
   return {{"rms_um", left.rms / kMicro}, {"max_um", left.max / kMicro}};
 }
@@ -88,7 +100,7 @@ std::string volume_check_text(const VolumeCheck& check, const CompensationType& 
     parts.add_row({CompensationType(part.part).name(), fixed_number(part.before.rms / kMicro, 2),
                    fixed_number(part.exported.rms / kMicro, 2), fixed_number(part.exported.max / kMicro, 2)});
   }
-  return volume.text() + parts.text();
+  return volume.text() + (check.fixed ? fixed_left_text(*check.fixed) : "") + parts.text();
 }
 
 nlohmann::ordered_json volume_check_json(const VolumeCheck& check) {
@@ -97,6 +109,10 @@ nlohmann::ordered_json volume_check_json(const VolumeCheck& check) {
                                  {"tables", left_json(check.exported)},
                                  {"identification_u_um", check.identification_u / kMicro},
                                  {"expected_rms_um", check.expected_rms() / kMicro}};
+  if (check.fixed) {
+    json["no_axis_moves_along"] = left_json(check.fixed->error);
+    json["no_axis_moves_along"]["axes"] = letters_of(*check.fixed);
+  }
   if (check.over_conditions) json["tables_over_conditions"] = left_json(*check.over_conditions);
   if (check.over_parallel) {
     json["parallel_axes_at_mm"] = homes_json(*check.over_parallel);

@@ -262,6 +262,28 @@ TEST(ErrorLeft, IsBeforeTablesWhatTheBudgetSays) {
   }
 }
 
+/// EYX = 10 um (u^2 - 1), u from -1 to 1 over the travel. No axis moves along Y. Less its mean it is
+/// 10 um (u^2 - 1/3), RMS 10 um sqrt(1/5 - 1/9) = 2.98 um, at most 6.67 um, whatever the tables.
+TEST(ErrorLeft, CountsComponentsAlongWhichNoAxisMoves) {
+  const auto bow = [](double q) { return 40e-6 * q * (q - 1.0); };
+  for (const char* structure : {"w b X t", "w b Z X t"}) {
+    Machine machine = testing_support::machine_of(structure);
+    machine.tools = {{"short", {0.0, 0.0, -0.1}, 0.0}};
+    const FitResult result = testing::result_with(machine, {.functions = {{"EYX", bow}}}, 100);
+    const VolumeCheck check = tables_of(result, "csv", CompensationType::volumetric()).check;
+    ASSERT_TRUE(check.fixed) << structure;
+    EXPECT_EQ(check.fixed->axes.size(), 3 - machine.axes.size()) << structure;
+    for (const ErrorLeft& left : {check.before, check.ideal, check.exported, check.fixed->error,
+                                  check.parts[1].before, check.parts[1].exported}) {
+      EXPECT_NEAR(left.rms, 2.98e-6, 0.1e-6) << structure;
+      EXPECT_NEAR(left.max, 6.67e-6, 0.5e-6) << structure << ": 100 places are not quite even";
+    }
+    EXPECT_EQ(check.parts[1].part, CompensationPart::Straightness);
+  }
+  EXPECT_FALSE(tables_of(testing::rotary_result("w C' A' Y' b X Z t"), "csv", CompensationType::volumetric())
+                   .check.fixed);
+}
+
 /// A bump 8 mm wide that stands between the places of a lattice is left by a table of large steps.
 TEST(ErrorLeft, SeesWhatIsLocal) {
   const FitResult result = stated(effect_spec("custom", {{"target", std::string("EYX")},

@@ -52,6 +52,19 @@ TEST(VolumeUncertainty, IsTheHandCalculation) {
   EXPECT_EQ(volume_uncertainty(result, result.machine.tools[0], {}, corners, directions), 0.0);
 }
 
+// EYX of u = 1 um in the middle of X and nothing at its ends, on a machine that has X alone: less the mean
+// -1/3, 2/3, -1/3 um, root mean square sqrt(2/9) um.
+TEST(VolumeUncertainty, CountsComponentsAlongWhichNoAxisMoves) {
+  Machine machine = machine_of("w b X t");
+  machine.tools = {{"short", {0.0, 0.0, 0.0}, 0.0}};
+  FitResult result = testing::result_with(machine, {.functions = {{"EYX", [](double) { return 0.0; }}}}, 2);
+  result.covariance(1, 1) = 1e-12;
+  const std::vector<AxisPosition> places = {{0, 0, 0}, {0.5, 0, 0}, {1, 0, 0}};
+  const std::vector<ApproachDirection> directions(places.size());
+  EXPECT_NEAR(volume_uncertainty(result, machine.tools[0], {}, places, directions),
+              std::sqrt(2.0 / 9.0) * 1e-6, 1e-12);
+}
+
 // With C = R R^T the trace is the sum over the columns of R of what their displacements leave after a rigid
 // motion, each evaluated as an error of its own.
 TEST(VolumeUncertainty, IsTheSumOverTheRootsOfTheCovariance) {

@@ -158,7 +158,12 @@ void check_table_options(const TableFormat& format, const FitResult& result,
         "of the structure where it stands still");
   check_type(format, result, options.type);
   if (result.machine.main_linear_axes().empty())
-    throw InputError({}, "the machine has no linear axis", "compensation tables are for linear axes");
+    throw InputError(
+        {},
+        "the machine has no linear axis, and tables of rotary axes are written beside those of "
+        "linear ones",
+        "take the errors of its rotary axes from error_tables.csv of the result: EAA, EBB and ECC "
+        "with the opposite sign are R-POS");
   check_positions(options);
   check_settings(format, options);
   tool_of(result.machine, options);

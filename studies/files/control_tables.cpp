@@ -143,9 +143,11 @@ sim::ControlTables neutral_control(std::span<const TableFile> files) {
 sim::ControlTables linuxcnc_control(std::span<const TableFile> files) {
   AxisTables axes(sim::TableValue::Correction);
   double unit = kMillimetre;
+  std::string coordinates = "XYZ";  // axes by the number of their joint
   std::optional<std::size_t> joint;
   std::map<std::size_t, std::pair<std::string, int>> comp;
   for (const Words& line : lines_of_words(content_of(files, "compensation.ini"), " \t=")) {
+    if (line.size() == 3 && line[0] == "#" && line[1] == "coordinates") coordinates = line[2];
     if (line[0].front() == '[') joint.reset();
     if (line[0].starts_with("[JOINT_")) joint = static_cast<std::size_t>(line[0][7] - '0');
     if (line[0] == "LINEAR_UNITS") unit = line.at(1) == "inch" ? kInch : kMillimetre;
@@ -153,7 +155,7 @@ sim::ControlTables linuxcnc_control(std::span<const TableFile> files) {
     if (joint && line[0] == "COMP_FILE_TYPE") comp[*joint].second = std::stoi(line.at(1));
   }
   for (const auto& [number, file] : comp) {
-    const AxisName axis = kLinearAxes.at(number);
+    const AxisName axis = axis_in(std::string(1, coordinates.at(number)));
     for (const Words& row : lines_of_words(content_of(files, file.first), " \t")) {
       const double nominal = std::stod(row.at(0)), plus = std::stod(row.at(1)), minus = std::stod(row.at(2));
       const bool trims = file.second == 1;

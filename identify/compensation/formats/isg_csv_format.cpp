@@ -153,15 +153,16 @@ std::string isg_blocks(const FitResult& result, const TableFormatOptions& option
   return std::string(component ? kIsgComponent : kIsgRelative) + "\n" + text;
 }
 
-/// Every linear axis of a grid must be there: signs are looked up by axis.
-void require_three_axes(const FitResult& result, const TableFormatOptions& options) {
-  if (!has_rotary_blocks(options) || result.machine.main_linear_axes().size() == 3) return;
+/// A grid, the list of axes and the chain are of X, Y and Z.
+void require_three_axes(const Machine& machine) {
+  if (machine.main_linear_axes().size() == kLinearAxes.size()) return;
   throw InputError({}, "isg-csv: the volumetric compensation needs the three linear axes X, Y and Z",
-                   "leave out the types of rotary axes");
+                   "write --format isg-ssfk, which holds L-POS of every axis, or csv, which holds the errors "
+                   "of every axis");
 }
 
 std::vector<TableFile> write_isg(const FitResult& result, const TableFormatOptions& options) {
-  require_three_axes(result, options);
+  require_three_axes(result.machine);
   std::vector<TableFile> files = {
       {std::string(kIsgList), isg_list(result.machine, has_rotary_blocks(options))},
       {std::string(kIsgFile), isg_blocks(result, options)}};

@@ -5,6 +5,7 @@
 
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
+#include "tests/support/refusal.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/model/description/errors.h"
 
@@ -75,6 +76,61 @@ TEST(SignByHand, LinuxCncType0HoldsActualPositions) {
       {"x.comp", "0 0 0\n1000 1000.010 1000.006\n"}};
   EXPECT_NEAR(x_um("linuxcnc", files, kFarX, 1), -10.0, 1e-6);
   EXPECT_NEAR(x_um("linuxcnc", files, kFarX, -1), -6.0, 1e-6);
+}
+
+/// X and Z of a lathe are joints 0 and 1 (kins(9), trivkins coordinates=xz). Z goes 10 um too far at 1 m.
+TEST(SignByHand, LinuxCncCountsTheJointsOfALathe) {
+  const Machine lathe = testing_support::machine_of("w b Z X t");
+  TableFormatOptions options;
+  options.type = CompensationPart::Positioning;
+  options.step = 0.5;
+  FitResult result =
+      testing::result_with(lathe, {.functions = {{"EZZ", [](double q) { return 10e-6 * q; }}}}, 2);
+  result.machine.tools = {{"short", {0.0, 0.0, 0.0}, 0.0}};
+  const auto files = find_table_format("linuxcnc")->write(result, options);
+  const std::string ini = content_of(files, "compensation.ini");
+  EXPECT_THAT(ini, ::testing::StartsWith("# coordinates = XZ\n[TRAJ]\n"));
+  EXPECT_THAT(ini, HasSubstr("[JOINT_0]\nCOMP_FILE = x.comp\n"));
+  EXPECT_THAT(ini, HasSubstr("[JOINT_1]\nCOMP_FILE = z.comp\n"));
+  const auto correction =
+      find_table_format("linuxcnc")->read(files).correction({0.0, 0.0, 1.0}, kTowardsPlus);
+  EXPECT_NEAR(correction.linear.z(), -10e-6, 1e-11);
+  EXPECT_EQ(correction.linear.y(), 0.0);
+  EXPECT_THAT(
+      content_of(files_of("linuxcnc", long_axis(), CompensationPart::Positioning), "compensation.ini"),
+      ::testing::StartsWith("[TRAJ]\n"));
+}
+
+TEST(SignByHand, IsgCsvNeedsThreeLinearAxes) {
+  FitResult result = testing::result_with(testing_support::machine_of("w b Z X t"),
+                                          {.functions = {{"EZZ", [](double q) { return 10e-6 * q; }}}}, 2);
+  result.machine.tools = {{"short", {0.0, 0.0, 0.0}, 0.0}};
+  for (const CompensationType type :
+       {CompensationType(CompensationPart::Positioning), CompensationType::volumetric()}) {
+    TableFormatOptions options;
+    options.type = type;
+    options.step = 0.5;
+    EXPECT_THAT(testing::refusal([&] { find_table_format("isg-csv")->write(result, options); }),
+                HasSubstr("needs the three linear axes X, Y and Z (write --format isg-ssfk"));
+    if (type.is_separable()) {
+      EXPECT_NO_THROW(find_table_format("isg-ssfk")->write(result, options));
+    }
+  }
+}
+
+TEST(TableOptions, ARotaryTableAloneGetsNoTables) {
+  FitResult result = testing::result_with(testing_support::machine_of("w C' b t"),
+                                          {.functions = {{"ECC", [](double q) { return 1e-6 * q; }}}}, 2);
+  result.machine.tools = {{"short", {0.0, 0.0, 0.0}, 0.0}};
+  for (const char* name : {"csv", "sinumerik"}) {
+    const TableFormat& format = *find_table_format(name);
+    TableFormatOptions options;
+    options.type = format.supported;
+    EXPECT_THAT(
+        testing::refusal([&] { write_tables(format, result, options); }),
+        HasSubstr("beside those of linear ones (take the errors of its rotary axes from error_tables.csv"))
+        << name;
+  }
 }
 
 TEST(SignByHand, LinuxCncGridHoldsCorrectionsAndHalfTheReversal) {

@@ -49,6 +49,12 @@ TEST(ControlTables, LinuxCncByHand) {
   const std::vector<TableFile> actual = {{"compensation.ini", ini + "0\n"},
                                          {"x.comp", "0 0 0\n1000 1000.010 1000.006\n"}};
   EXPECT_NEAR(added_um("linuxcnc", actual, kMiddleOfX, 1).x(), -5.0, 1e-6);
+  const std::vector<TableFile> lathe = {
+      {"compensation.ini",
+       "# coordinates = XZ\n[TRAJ]\nLINEAR_UNITS = mm\n[JOINT_1]\nCOMP_FILE = z.comp\n"
+       "COMP_FILE_TYPE = 1\n"},
+      {"z.comp", "0 0 0\n1000 -0.010 -0.010\n"}};
+  EXPECT_NEAR(added_um("linuxcnc", lathe, {0.0, 0.0, 0.5}, 1).z(), -5.0, 1e-9);
 }
 
 TEST(ControlTables, GridsByHand) {

@@ -19,6 +19,16 @@ constexpr int kMostRows = 256;
 constexpr std::size_t kLongestLine = 254;
 constexpr std::string_view kIniFile = "compensation.ini";
 
+constexpr std::string_view kIniCoordinates = "# coordinates = ";
+constexpr std::string_view kAllCoordinates = "XYZ";
+
+/// Letters of the linear axes by the number of their joint, as `trivkins coordinates=XZ` counts them.
+std::string coordinates_of(const Machine& machine) {
+  std::string letters;
+  for (const AxisName axis : machine.main_linear_axes()) letters += letter_of(axis);
+  return letters;
+}
+
 std::string comp_file_name(AxisName axis) { return std::string(1, lower_letter_of(axis)) + ".comp"; }
 
 /// Trims: three numbers a line and nothing else, since the loader stops at the first other line.
@@ -35,12 +45,14 @@ std::string comp_file(const AxisTable& table, double unit) {
 std::vector<TableFile> write_linuxcnc(const FitResult& result, const TableFormatOptions& options) {
   const std::string units = linear_units_of(options);
   const double unit = linear_unit(units);
-  std::string ini = fmt::format("[TRAJ]\nLINEAR_UNITS = {}\n", units);
+  const std::string coordinates = coordinates_of(result.machine);
+  std::string ini = coordinates == kAllCoordinates ? "" : fmt::format("{}{}\n", kIniCoordinates, coordinates);
+  ini += fmt::format("[TRAJ]\nLINEAR_UNITS = {}\n", units);
   std::vector<TableFile> files;
   for (const SampledTable& sampled : sample_axis_tables(linuxcnc_format(), result, options)) {
     files.push_back({comp_file_name(sampled.output), comp_file(sampled.table, unit)});
-    ini += fmt::format("\n[JOINT_{}]\nCOMP_FILE = {}\nCOMP_FILE_TYPE = 1\n", direction_of(sampled.output),
-                       files.back().name);
+    ini += fmt::format("\n[JOINT_{}]\nCOMP_FILE = {}\nCOMP_FILE_TYPE = 1\n",
+                       coordinates.find(letter_of(sampled.output)), files.back().name);
   }
   files.push_back({std::string(kIniFile), ini});
   return files;
@@ -54,8 +66,18 @@ struct CompFile {
 
 struct JointFiles {
   double unit = 0.0;  ///< m
+  std::string coordinates{kAllCoordinates};
   std::map<int, CompFile> joints;
 };
+
+std::string joints_text(const std::string& coordinates) {
+  std::string numbers, axes;
+  for (std::size_t joint = 0; joint < coordinates.size(); ++joint) {
+    numbers += (joint > 0 ? ", " : "") + std::to_string(joint);
+    axes += (joint > 0 ? ", " : "") + std::string(1, coordinates[joint]);
+  }
+  return "joints " + numbers + " are " + axes + "; rename the section or give kinematics with these joints";
+}
 
 /// The part of an INI file that compensation is about; other sections and keys are for others.
 class IniReader {
@@ -65,6 +87,7 @@ class IniReader {
   JointFiles read() {
     while (lines_.advance_to_content()) {
       const std::string_view line = trimmed_text(lines_.current());
+      if (line.starts_with(kIniCoordinates)) read_coordinates(line.substr(kIniCoordinates.size()));
       if (line.front() == '#' || line.front() == ';') continue;
       if (line.front() == '[') {
         open_section(line);
@@ -82,15 +105,26 @@ class IniReader {
   }
 
  private:
+  void read_coordinates(std::string_view letters) {
+    std::string_view rest = kAllCoordinates;
+    for (const char letter : letters) {
+      const std::size_t at = rest.find(letter);
+      if (at == std::string_view::npos)
+        lines_.fail("the coordinates are \"" + std::string(letters.substr(0, 20)) + "\"",
+                    "write the linear axes of the machine in the order X Y Z, as XZ");
+      rest.remove_prefix(at + 1);
+    }
+    files_.coordinates = std::string(letters);
+  }
+
   void open_section(std::string_view line) {
     section_ = std::string(line);
     joint_ = -1;
     constexpr std::string_view kPrefix = "[JOINT_";
     if (!line.starts_with(kPrefix)) return;
     joint_ = line.size() == kPrefix.size() + 2 && line.back() == ']' ? line[kPrefix.size()] - '0' : -1;
-    if (joint_ < 0 || joint_ > 2)
-      lines_.fail("the section is " + section_.substr(0, 40),
-                  "joints 0, 1, 2 are X, Y, Z; rename the section or give kinematics with these joints");
+    if (joint_ < 0 || joint_ >= static_cast<int>(files_.coordinates.size()))
+      lines_.fail("the section is " + section_.substr(0, 40), joints_text(files_.coordinates));
   }
 
   void read_key(std::string_view line) {
@@ -150,7 +184,7 @@ CompensationTables read_linuxcnc(std::span<const TableFile> files) {
   const JointFiles ini = IniReader(file_named(files, kIniFile)).read();
   CompensationTables result;
   for (const auto& [joint, comp] : ini.joints) {
-    const AxisName axis = kLinearAxes[static_cast<std::size_t>(joint)];
+    const AxisName axis = *axis_from_letter(ini.coordinates[static_cast<std::size_t>(joint)]);
     result.terms.push_back(
         axis_term(axis, read_comp_file(file_named(files, comp.name), axis, comp.type, ini.unit)));
   }
@@ -167,7 +201,9 @@ const TableFormat& linuxcnc_format() {
           "the lines of the INI file that name them",
       .source =
           "LinuxCNC, INI configuration, [JOINT_n] COMP_FILE and COMP_FILE_TYPE = 1: trim added to the "
-          "command, linear between rows, end values held; joints 0 1 2 move X Y Z",
+          "command, linear between rows, end values held; joints are numbered by the axes that the machine "
+          "has, in the order "
+          "X Y Z (kins(9): trivkins coordinates=xz assigns x==joint0, z==joint1)",
       .verified =
           "applied by LinuxCNC 2.9.0~pre1 in simulation as predicted, in both directions "
           "(scripts/linuxcnc-loop); not on a machine",

@@ -403,12 +403,17 @@ Eigen::MatrixXd PlanProblem::effect_functionals(const Linearised& at) const {
 
 /// Precision of everything without readings of the plan.
 Eigen::MatrixXd PlanProblem::known(const Linearised& at) const {
-  Eigen::MatrixXd precision = stated_priors(at.model, at.datum).precision;
-  if (machine_precision_.size() > 0) {
-    precision.topLeftCorner(machine_size_, machine_size_) = machine_precision_;
-  }
-  for (Eigen::Index k = machine_size_; k < precision.rows(); ++k) {
-    if (precision(k, k) == 0.0) precision(k, k) = 1.0 / (kWideNuisance * kWideNuisance);
+  const Eigen::Index size = at.datum.size();
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(size, size);
+  precision.topLeftCorner(machine_size_, machine_size_) = machine_precision_;
+  precision.diagonal().tail(size - machine_size_).setConstant(1.0 / (kWideNuisance * kWideNuisance));
+  for (const auto& block : at.datum.blocks()) {
+    if (block.offset < machine_size_) continue;
+    const ParameterBlock& source = at.model.layout().blocks[block.block];
+    for (int k = 0; k < block.size; ++k) {
+      const double sigma = source.prior_sigma[k];
+      if (sigma > 0.0) precision(block.offset + k, block.offset + k) = 1.0 / (sigma * sigma);
+    }
   }
   if (existing_.size() == 0) return precision;
   const std::vector<std::string> names = at.names_behind(machine_size_);

@@ -18,11 +18,13 @@ import unittest
 
 PROGRAM, CAMPAIGN = sys.argv[1:3]
 DRAWS = ["-n", "60000", "--path", "linear", "--refits", "1", "--threads", "1", "--checkpoint-every", "0"]
+MODEL = 'format = "volcal-model-1"\n[functions]\ndefault = { basis = "legendre", degree = 2 }\n'  # a quick fit
 ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 def command(ranks, output, *more):
-    alone = [PROGRAM, "montecarlo", CAMPAIGN, *DRAWS, "-o", output, *more]
+    model = str(pathlib.Path(output).parent / "model.toml")
+    alone = [PROGRAM, "montecarlo", CAMPAIGN, "-m", model, *DRAWS, "-o", output, *more]
     return alone if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks), *alone]
 
 
@@ -46,6 +48,7 @@ class Ranks(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.scratch = tempfile.TemporaryDirectory()
+        pathlib.Path(cls.path("model.toml")).write_text(MODEL, encoding="utf-8")
         cls.alone = cls.path("alone")
         done = run(1, cls.alone)
         if done.returncode != 0:

@@ -19,32 +19,27 @@ async function accessible({ axe }, page, fault) {
   await session.detach();
 }
 
-async function lookAt(story, fault, name, view) {
+async function lookAt(story, fault, name, view, further = () => {}) {
   const { page, context } = await open(story.browser, story.url, view, fault);
   await ranked(page);
   await page.waitForTimeout(1200);
   await fits(page, fault);
   await accessible(story, page, fault);
   await shot(page, story, name);
+  await further(page);
   await context.close();
 }
 
-async function print(story, fault) {
-  const { page, context } = await open(story.browser, story.url, { ...story.wide, scheme: 'dark' }, fault);
-  await ranked(page);
-  await page.waitForTimeout(1000);
+async function print(story, page, fault) {
   const pdf = await page.pdf({ path: path.join(story.out, 'paper.pdf'), preferCSSPageSize: true, printBackground: true });
   const sheets = pdf.toString('latin1').match(/\/Type\s*\/Page\b/g)?.length ?? 0;
   if (sheets === 0 || sheets > 8) fault(`${sheets} sheets; at most 8 are sensible`);
-  await context.close();
 }
 
 export const looks = {
   wide: (story, fault) => accessible(story, story.main.page, fault).then(() => fits(story.main.page, fault)),
   phone: (story, fault) => lookAt(story, fault, 'phone', { width: 360, height: 740 }),
-  dark: (story, fault) => lookAt(story, fault, 'dark', { ...story.wide, scheme: 'dark' }),
-  'without motion': (story, fault) => lookAt(story, fault, 'still', { ...story.wide, motion: 'reduce' }),
-  paper: print,
+  'dark, without motion, then on paper': (story, fault) => lookAt(story, fault, 'dark', { ...story.wide, scheme: 'dark', motion: 'reduce' }, (page) => print(story, page, fault)),
 };
 
 const kReadOnly = '.banner button:text("Write here")';

@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "volcal/identify/compensation/active_tables.h"
-#include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/criticism/screening.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/report/text/validation_text.h"
@@ -26,6 +24,7 @@
 #include "volcal/python/shared/findings.h"
 #include "volcal/python/shared/long_work.h"
 #include "volcal/python/shared/option_words.h"
+#include "volcal/python/tables.h"
 
 namespace volcal::python {
 namespace {
@@ -80,23 +79,13 @@ Result fit_campaign(const std::shared_ptr<Campaign>& campaign, const Model* mode
   });
 }
 
-/// Tables as a folder of them is read (superimposed on none).
-ActiveTables active_tables_of(const MadeTables& made, const std::string& identified_with) {
-  ActiveTables active{made.read_back, {}, false};
-  if (!names_compensations(identified_with)) return active;
-  const auto metadata = std::ranges::find(made.files, std::string("metadata.csv"), &TableFile::name);
-  active.is_doubtful = metadata == made.files.end() ||
-                       !stand_beside({metadata->name, whole_content(*metadata)}, identified_with);
-  return active;
-}
-
 /// A campaign in the frame of the errors that it judges, with what is to be said of both among its notes.
 struct JudgingCampaign {
   Campaign campaign;
   std::optional<MeasuredError> with_tables;  ///< that were active
 };
 
-JudgingCampaign judging_campaign(const Campaign& given, const FitResult& errors, const MadeTables* tables,
+JudgingCampaign judging_campaign(const Campaign& given, const FitResult& errors, const Tables* tables,
                                  int threads) {
   std::optional<Campaign> aligned = readings_for(given, errors, {given.file, 0});
   JudgingCampaign judging{aligned ? std::move(*aligned) : given, {}};
@@ -118,8 +107,7 @@ void add_measured(const MeasuredError& measured, py::dict& dict) {
   dict["compensated_angle_max"] = measured.sizes.angles.max;
 }
 
-py::dict validation_figures(const Campaign& given, const Result& result, const MadeTables* tables,
-                            int threads) {
+py::dict validation_figures(const Campaign& given, const Result& result, const Tables* tables, int threads) {
   require_threads(threads);
   const FittedReadings fitted = fitted_readings(given, result.result);
   JudgingCampaign judging =

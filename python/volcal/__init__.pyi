@@ -558,6 +558,7 @@ def tables(
     run: str = "",
     record: Mapping[str, str] = ...,
     lines: Mapping[str, float] = ...,
+    superimpose: Tables | None = None,
 ) -> Tables: ...
 def certificate(
     result: Result,

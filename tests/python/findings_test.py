@@ -2,11 +2,12 @@
 
 import gc
 import json
+import shutil
 import unittest
 from collections.abc import Sequence
 
 import volcal
-from support import HIDDEN, Case, FittedCase, run_program, white_fit
+from support import HIDDEN, Case, FittedCase, coarse, run_program, white_fit
 
 FILE = HIDDEN / "21" / "campaign.toml"
 PROGRAM = "G21 G90\nG0 X0 Y0 Z-10\nG1 X100 F1000\nM2\n"
@@ -54,6 +55,35 @@ class Validation(Fitted):
         self.assertAlmostEqual(figures["reduced_chi2"], told["reduced_chi2"], places=9)
         self.assertEqual(self.told(figures["findings"]), told.get("notes", []))
         self.assertNotIn("compensated_rms", volcal.validate(self.campaign, self.result))
+
+    def test_of_a_machine_with_superimposed_tables(self) -> None:
+        """The files and figures of the command line, for errors identified with the former tables active."""
+        measured = self.folder / "measured"
+        shutil.copytree(FILE.parent, measured)
+        file = measured / FILE.name
+        file.write_text('active_compensations = "L-POS of May"\n' + FILE.read_text())
+        campaign = volcal.read_campaign(file)
+        result = volcal.fit(campaign, coarse(campaign), noise="white", screening=False)
+        result.write(self.folder / "again", report=False)
+        former = volcal.tables(self.result, format="neutral-csv", type="L-POS", step_mm=100.0)
+        former.write(self.folder / "former")
+        tables = volcal.tables(result, format="neutral-csv", step_mm=100.0, superimpose=former)
+        tables.write(self.folder / "tables")
+        run_program("tables", self.folder / "again", "--format", "neutral-csv", "--step", "100", "--superimpose",
+                    self.folder / "former", "-o", self.folder / "by_program")
+        names = sorted(path.relative_to(self.folder / "tables") for path in (self.folder / "tables").rglob("*.csv"))
+        self.assertEqual(names, sorted(path.relative_to(self.folder / "by_program")
+                                       for path in (self.folder / "by_program").rglob("*.csv")))
+        self.assertIn("superimposed_on/metadata.csv", map(str, names))
+        for name in names:
+            self.assertEqual((self.folder / "tables" / name).read_bytes(), (self.folder / "by_program" / name).read_bytes(), name)
+        told = json.loads(run_program("validate", self.folder / "again", file, "--tables", self.folder / "tables", "--json"))
+        figures = volcal.validate(campaign, result, tables=tables)
+        self.assertAlmostEqual(figures["rms_after"] * 1e6, told["rms_after_um"], places=9)
+        self.assertEqual(self.told(figures["findings"]), told.get("notes", []))
+        beside = volcal.tables(result, format="neutral-csv", step_mm=100.0)
+        alone = volcal.validate(campaign, result, tables=beside)
+        self.assertNotAlmostEqual(figures["rms_after"] * 1e6, alone["rms_after"] * 1e6, places=2)
 
     def test_of_an_aligned_result(self) -> None:
         aligned = volcal.align(self.result, primary="Y", secondary="X").result

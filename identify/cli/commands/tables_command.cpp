@@ -159,7 +159,7 @@ void write_files(const FitResult& result, const MadeTables& made, const TablesAr
   AtomicFolder folder(arguments.output);
   for (const TableFile& file : made.files) folder.write(file);
   if (!arguments.superimpose.empty())
-    keep_former_tables(arguments.superimpose, result.active_compensations, folder);
+    keep_former_folder(arguments.superimpose, result.active_compensations, folder);
   if (sources) {
     const MeasurementRecord record = stated_record(*sources, made);
     write_certificate(arguments.certificate, {result, made, record, sources->before, sources->after},

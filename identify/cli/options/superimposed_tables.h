@@ -1,7 +1,6 @@
 #pragma once
-/// Folders of tables that say what they stand in place of. Superimposed tables (ISO/TR 16907:2015, 10.5) hold
-/// what the former ones corrected and what was identified with these active. The folder keeps them below
-/// superimposed_on/tables, with what the campaign said of them in superimposed_on/metadata.csv.
+/// Folders of tables, by the rules of their controller, and what they stand in place of
+/// (io/results/former_tables.h).
 
 #include <string>
 
@@ -13,9 +12,9 @@ namespace volcal::cli {
 /// The tables in a folder, by the rules of their controller. Throws InputError.
 CompensationTables active_tables(const std::string& folder);
 
-/// Puts the former tables into the folder of those that replace them. `active_compensations`: those of the
-/// errors that the new tables were made from.
-void keep_former_tables(const std::string& former, const std::string& active_compensations,
+/// Puts the tables of the folder `former` into the folder of those that replace them. `active_compensations`:
+/// those of the errors that the new tables were made from.
+void keep_former_folder(const std::string& former, const std::string& active_compensations,
                         const AtomicFolder& folder);
 
 /// The tables in a folder, by the rules of their controller, for errors that were identified with

@@ -50,13 +50,21 @@ struct Framed {
   }
 };
 
+/// A model of few parameters, for tests that ask for no numbers: a fit takes a tenth of a second.
+std::string quick_model(const ScratchFolder& folder) {
+  const fs::path path = folder.path() / "quick-model.toml";
+  std::ofstream(path) << "format = \"volcal-model-1\"\n[functions]\n"
+                         "default = { basis = \"bspline\", degree = 3, knots = 3 }\n";
+  return path.string();
+}
+
 /// A workbench on a copy of a campaign, and a page of it.
 struct Page {
   ScratchFolder folder;
   std::string campaign;
   std::unique_ptr<Workbench> bench;
 
-  explicit Page(bool confirm = true, bool read_only = false) {
+  explicit Page(bool confirm = true, bool read_only = false, bool quick = false) {
     fs::copy(fs::path(VOLCAL_SOURCE_DIR) / "datasets/hidden/21", folder.path() / "campaign");
     campaign = (folder.path() / "campaign/campaign.toml").string();
     WorkbenchOptions options;
@@ -65,6 +73,7 @@ struct Page {
     options.threads = 1;
     options.confirm_behind = confirm;
     options.read_only = read_only;
+    if (quick) options.model = quick_model(folder);
     bench = std::make_unique<Workbench>(options);
     bench->wait_until_idle();
   }
@@ -320,7 +329,7 @@ TEST(WorkbenchDoors, ExportsSayWhatWasLeftOut) {
 }
 
 TEST(WorkbenchDoors, TriesNoFormulaWhileTheUserWaitsForWork) {
-  Page page(false);
+  Page page(false, false, true);
   page.told("climb");
   EXPECT_EQ(page.ask("formula", {{"text", "EXX += 3 * dir_x"}}).status, 409);
   page.told("cancel");
@@ -342,7 +351,7 @@ TEST(WorkbenchDoors, SaysOfConfirmedEffectsWhatTheyWereAddedBy) {
 }
 
 TEST(WorkbenchDoors, AReaderWritesNothing) {
-  Page page(false, true);
+  Page page(false, true, true);
   EXPECT_EQ(page.ask("export", {{"what", "model"}}).status, 403);
   EXPECT_EQ(page.ask("add", {{"effect", kReversalOfX}}).status, 200) << "it may look and try";
   EXPECT_FALSE(fs::exists(page.folder.path() / "out"));
@@ -360,6 +369,7 @@ struct Changing {
   void open() {
     WorkbenchOptions options;
     options.campaign = file("campaign.toml").string();
+    options.model = quick_model(folder);
     options.threads = 1;
     bench = std::make_unique<Workbench>(options);
     bench->wait_until_idle();
@@ -432,6 +442,7 @@ TEST(WorkbenchDoors, GoesOnWhenAFileIsMended) {
   std::ofstream(campaign) << "format = \"volcal-campaign-1\"\nmachin = \"machine.toml\"\n";
   WorkbenchOptions options;
   options.campaign = campaign.string();
+  options.model = quick_model(folder);
   options.threads = 1;
   Workbench bench(options);
   bench.wait_until_idle();

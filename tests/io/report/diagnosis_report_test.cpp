@@ -186,9 +186,9 @@ TEST_F(DiagnosisReport, WhatIsToldApartAndWhatToMeasure) {
   EXPECT_EQ(limit.at("rival"), "reversal EYY");
   const Json& proposal = confounding.at("proposals").at(0);
   EXPECT_EQ(proposal.at("separates").at(1).at("label"), "reversal EYY");
-  EXPECT_NEAR(proposal.at("now").get<double>(), 1.58, 1e-9);      // square root of 2.5
-  EXPECT_NEAR(proposal.at("reached").get<double>(), 2.74, 1e-9);  // of 7.5
-  EXPECT_NEAR(proposal.at("plain").get<double>(), 1.77, 1e-9);    // of 3.125
+  EXPECT_NEAR(proposal.at("now").get<double>(), 1.581, 1e-9);      // square root of 2.5
+  EXPECT_NEAR(proposal.at("reached").get<double>(), 2.739, 1e-9);  // of 7.5
+  EXPECT_NEAR(proposal.at("plain").get<double>(), 1.768, 1e-9);    // of 3.125
   EXPECT_EQ(proposal.at("readings"), 48);
 }
 

@@ -118,7 +118,7 @@ class GenericCsv {
     const auto axis = letter == 0 ? std::nullopt : axis_from_letter(static_cast<char>(letter - 'a' + 'A'));
     if (axis && answers_.at.contains(*axis))
       return add_fact(shown, std::string("not read: ") + letter_of(*axis) + " stands where --at says", "");
-    add_fact(shown, "not read", "nobody asks for it");
+    add_fact(shown, "not read", "no instrument or axis needs it");
   }
 
   std::string meaning(const std::string& header) {

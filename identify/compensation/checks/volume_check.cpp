@@ -103,6 +103,12 @@ std::vector<VolumePoint> over_parallel_axes(const Machine& machine, std::vector<
 
 }  // namespace
 
+std::string FixedLeft::axes_text() const {
+  std::string text;
+  for (const AxisName axis : axes) text += (text.empty() ? "" : " and ") + std::string(1, letter_of(axis));
+  return text;
+}
+
 ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& points,
                      const DisplacementField& errors) {
   std::vector<Eigen::Vector3d> places, vectors;

@@ -3,6 +3,7 @@
 /// and with the tables as written and read back by the rules of the controller.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "volcal/identify/compensation/compensation.h"
@@ -36,6 +37,8 @@ struct ParallelLeft {
 struct FixedLeft {
   std::vector<AxisName> axes;  ///< X, Y, Z that the machine lacks
   ErrorLeft error;             ///< with every other component corrected
+
+  std::string axes_text() const;  ///< "X and Y"
 };
 
 /// Parallel axes U, V, W are at home, but for `over_parallel`.

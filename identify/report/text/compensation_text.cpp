@@ -24,7 +24,7 @@ std::vector<std::string> letters_of(const FixedLeft& fixed) {
 
 std::string fixed_left_text(const FixedLeft& fixed) {
   return fmt::format("no axis moves along {}: {} um RMS of it, {} um max stay whatever the tables\n",
-                     fmt::join(letters_of(fixed), " and "), fixed_number(fixed.error.rms / kMicro, 2),
+                     fixed.axes_text(), fixed_number(fixed.error.rms / kMicro, 2),
                      fixed_number(fixed.error.max / kMicro, 2));
 }
 

@@ -33,12 +33,9 @@ Json volume_left_rows(const MadeTables& tables) {
                     {"max", nullptr}});
   if (check.over_conditions)
     rows.push_back(left_row("tables, ends of the campaign's conditions", *check.over_conditions));
-  if (check.fixed) {
-    std::string axes;
-    for (const AxisName axis : check.fixed->axes)
-      axes += (axes.empty() ? "" : " and ") + std::string(1, letter_of(axis));
-    rows.push_back(left_row("of it along " + axes + ", where no axis moves", check.fixed->error));
-  }
+  if (check.fixed)
+    rows.push_back(
+        left_row("of it along " + check.fixed->axes_text() + ", where no axis moves", check.fixed->error));
   if (tables.all_axes) {
     rows.push_back(pose_left_row("before, poses of all axes", tables.all_axes->before));
     rows.push_back(pose_left_row("tables, poses of all axes", tables.all_axes->exported));

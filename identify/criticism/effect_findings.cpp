@@ -38,10 +38,9 @@ void state_values(const Family& family, const Eigen::VectorXd& shape, const Eige
   out.shape_text.clear();
   for (std::size_t k = 0; k < shapes.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
-    const std::string stem(stem_of_key(shapes[k].key));
     const double si = shapes[k].si_per_unit();
-    out.spec.options.set(stem, shape[at]);
-    out.shape_text += fmt::format("{}{} {:.4g}", k > 0 ? ", " : "", stem, shape[at] / si);
+    out.spec.options.set(std::string(stem_of_key(shapes[k].key)), shape[at]);
+    out.shape_text += fmt::format("{}{} {:.4g}", k > 0 ? ", " : "", shapes[k].word(), shape[at] / si);
     if (u[at] > 0.0) out.shape_text += fmt::format(" +- {:.2g}", kCoverageFactor * u[at] / si);
     out.shape_text += " " + shapes[k].unit();
   }

@@ -12,9 +12,12 @@
 namespace volcal {
 namespace {
 
+/// `as`: what the model calls it, where that is another name.
 [[noreturn]] void refuse_known(const ModelSpec& model, int line, const std::string& what,
-                               const ExtensionWords& words) {
-  throw InputError({model.file, line}, "the model has " + what + " already", words.remedy_if_known);
+                               const std::string& as, const ExtensionWords& words) {
+  throw InputError({model.file, line},
+                   "the model has " + what + " already" + (as == what ? "" : ", as " + as),
+                   words.remedy_if_known);
 }
 
 void require_axis(const ModelToExtend& extended, AxisName axis, const ExtensionWords& words) {
@@ -31,7 +34,10 @@ void give_back(const ModelToExtend& extended, const EffectSpec& spec, const Exte
   }
   const bool lacks_one = std::ranges::any_of(
       errors, [&](const MachineError& error) { return is_left_out(error, extended.model); });
-  if (!lacks_one) refuse_known(extended.model, 0, *spec.options.text("symbol"), words);
+  if (!lacks_one) {
+    const std::string symbols = *spec.options.text("symbol");
+    refuse_known(extended.model, 0, symbols, symbols, words);
+  }
   restore_left_out(spec, extended.machine, extended.model);
 }
 
@@ -55,9 +61,11 @@ bool is_same(const Effect& known, const Effect& effect) {
 
 void require_not_known(const ModelSpec& model, const Effect& effect, const ExtensionWords& words) {
   for (const EffectSpec& present : model.effects) {
-    const EffectKind* known = find_effect(present.kind);
-    if (known != nullptr && is_same(*known->make(present, model.file), effect))
-      refuse_known(model, present.source_line, words.label, words);
+    const EffectKind* kind = find_effect(present.kind);
+    if (kind == nullptr) continue;
+    const std::unique_ptr<Effect> known = kind->make(present, model.file);
+    if (is_same(*known, effect))
+      refuse_known(model, present.source_line, words.label, effect_label(*known), words);
   }
 }
 

@@ -128,7 +128,7 @@ TEST(TryProgram, RefusesWhatTheModelHasAlready) {
       0);
   const auto again = run_program("try " + kHidden + " 'EXX:dir_x' --model " + model);
   EXPECT_EQ(again.exit_code, 2);
-  EXPECT_THAT(again.errors, HasSubstr("the model has this effect already"));
+  EXPECT_THAT(again.errors, HasSubstr("the model has this effect already, as EXX by dir_x"));
   const auto twice = run_program("extend " + model + " --custom 'EXX: dir_x'");
   EXPECT_EQ(twice.exit_code, 2);
   const auto alone = run_program("extend " + model + " --effect reversal:EXX --parameter p=1");

@@ -1,11 +1,11 @@
 #include "volcal/identify/solve/fit.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/numeric/stopwatch.h"
 #include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/solve/adjustment.h"
@@ -33,19 +33,6 @@ constexpr int kShapeSteps = 30;
 constexpr int kOutlierRounds = 60;
 constexpr double kMostOutliers = 0.25;  // of a setup: beyond, the model or the stated noise is wrong
 constexpr double kSurelyAsWell = 0.7;   // of the largest |w| of a setup: leaves in the same round
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// The state of one identification; each method is one stage.
 class Identification {
@@ -186,10 +173,20 @@ class Identification {
     const Eigen::MatrixXd data = datum_->reduce_matrix(sums.matrix) + base_prior_.precision;
     const GaussianPrior wide = above_rounding(data, wide_prior(model_, *datum_, z_, stated_sigma_));
     rank_ = analyse_rank(model_, *datum_, data, wide);
+    if (rank_.deficient)
+      rank_ = judge_by_roughness(model_, *datum_, data, wide, terms_as_rough_as_seen(wide), rank_);
     hold_undetermined(rank_, wide, base_prior_);
     terms_ = smoothing_terms(model_, *datum_);
     hold_invisible(rank_, terms_, base_prior_);
     leave_imitated_to_the_rest(datum_->reduce_matrix(sums.matrix), base_prior_, terms_);
+  }
+
+  std::vector<SmoothingTerm> terms_as_rough_as_seen(const GaussianPrior& wide) const {
+    std::vector<SmoothingTerm> terms = smoothing_terms(model_, *datum_);
+    GaussianPrior held = base_prior_;
+    hold_undetermined(rank_, wide, held);
+    maximise_evidence(noise_group_equations(), z_, held, {.threads = threads_}, scale_, terms);
+    return terms;
   }
 
   GaussianPrior prior() const {

@@ -3,11 +3,13 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/identify/solve/priors/smoothed_posterior.h"
 #include "volcal/identify/solve/rank_causes.h"
 #include "volcal/model/description/finding_codes.h"
 
@@ -22,6 +24,31 @@ constexpr int kPositions = 33;
 
 const Basis& basis_of(const ParameterLayout& layout, ErrorSymbol symbol) {
   return *layout.groups[static_cast<std::size_t>(layout.find(symbol)->group)].basis;
+}
+
+constexpr double kSettledCoefficients = 3.0;  // of a function whose amplitude they tell
+constexpr double kRougherAtMost = 3.0;        // than its amplitude tells
+
+/// Beyond the largest precision nothing is settled: the readings do not see the function.
+bool tells_amplitude(const SmoothingTerm& term, const Posterior& now) {
+  return term.is_function() && term.lambda < kMostLambda &&
+         settled_by_readings({&term, term.offset}, *term.prior, term.lambda, now) >= kSettledCoefficients;
+}
+
+/// The wide prior, and functions of settled amplitude no rougher than that allows.
+GaussianPrior with_settled_roughness(const Eigen::MatrixXd& data, const std::vector<SmoothingTerm>& terms,
+                                     GaussianPrior wide) {
+  GaussianPrior smoothed = wide;
+  add_smoothing(terms, smoothed);
+  const auto factor = cholesky_lower(data + smoothed.precision);
+  if (!factor) return wide;
+  const Posterior now{inverse_from_cholesky(*factor), {}, 0.0};
+  std::vector<SmoothingTerm> settled;
+  std::ranges::copy_if(terms, std::back_inserter(settled),
+                       [&](const SmoothingTerm& term) { return tells_amplitude(term, now); });
+  for (SmoothingTerm& term : settled) term.lambda /= kRougherAtMost * kRougherAtMost;
+  add_smoothing(settled, wide);
+  return wide;
 }
 
 /// Values of a function over the measured positions, one row each, in its reduced coordinates.
@@ -74,16 +101,17 @@ double mean_variance_in(const ErrorStretch& stretch, const Eigen::MatrixXd& full
 /// Covariances before and after the readings, and the part of the latter that hides from them.
 class RankAnalyser {
  public:
+  /// `prior`: of what readings are held against, `wide` or narrower; `wide`: what they are to improve.
   RankAnalyser(const MeasurementModel& model, const DatumSpace& datum, const Eigen::MatrixXd& data,
-               const GaussianPrior& wide)
+               const GaussianPrior& prior, const GaussianPrior& wide)
       : model_(model),
         datum_(datum),
         data_(data),
-        wide_(wide),
+        prior_(prior),
         stretches_(error_stretches(model, datum)),
         posterior_(
-            inverse(data + wide.precision, "the readings' normal matrix holds values that are not finite")),
-        prior_covariance_(inverse(wide.precision, "the wide prior is not positive definite")) {
+            inverse(data + prior.precision, "the readings' normal matrix holds values that are not finite")),
+        wide_covariance_(inverse(wide.precision, "the wide prior is not positive definite")) {
     find_hidden();
   }
 
@@ -108,7 +136,7 @@ class RankAnalyser {
   /// Eigenvectors of the readings' information in units of the wide prior: posterior covariance
   /// = sum of L^-T v v^T L^-1 / (1 + gain), of which those with little gain are hidden.
   void find_hidden() {
-    const auto root = cholesky_lower(wide_.precision);
+    const auto root = cholesky_lower(prior_.precision);
     const auto lower = root->triangularView<Eigen::Lower>();
     Eigen::MatrixXd gain = lower.solve(data_);
     gain = lower.solve(gain.transpose()).eval();
@@ -126,7 +154,7 @@ class RankAnalyser {
   }
 
   void judge(const ErrorStretch& stretch) {
-    const double prior_variance = mean_variance_in(stretch, prior_covariance_);
+    const double prior_variance = mean_variance_in(stretch, wide_covariance_);
     const double variance = mean_variance_in(stretch, posterior_);
     const double variance_alone = mean_variance(stretch, covariance_alone(stretch));
     Observability figure;
@@ -148,7 +176,7 @@ class RankAnalyser {
 
   /// With everything else known.
   Eigen::MatrixXd covariance_alone(const ErrorStretch& stretch) const {
-    return inverse(block(data_, stretch) + block(wide_.precision, stretch),
+    return inverse(block(data_, stretch) + block(prior_.precision, stretch),
                    "the wide prior is not positive definite");
   }
 
@@ -164,7 +192,7 @@ class RankAnalyser {
 
   /// Does a reading change with some combination of the error's coefficients?
   bool part_is_seen(const ErrorStretch& stretch) const {
-    const auto root = cholesky_lower(block(wide_.precision, stretch));
+    const auto root = cholesky_lower(block(prior_.precision, stretch));
     if (!root) return false;
     const auto lower = root->triangularView<Eigen::Lower>();
     Eigen::MatrixXd gain = lower.solve(block(data_, stretch));
@@ -202,8 +230,8 @@ class RankAnalyser {
   /// Is the first of these parameters not visible when all others than these are known?
   bool is_hidden_among(const std::vector<Eigen::Index>& open) const {
     const Eigen::MatrixXd covariance =
-        inverse(data_(open, open) + wide_.precision(open, open), "the wide prior is not positive definite");
-    return covariance(0, 0) * kGainOfVisible >= prior_covariance_(open[0], open[0]);
+        inverse(data_(open, open) + prior_.precision(open, open), "the wide prior is not positive definite");
+    return covariance(0, 0) * kGainOfVisible >= wide_covariance_(open[0], open[0]);
   }
 
   Finding cause_in_mixture(const ErrorStretch& stretch) const {
@@ -265,10 +293,10 @@ class RankAnalyser {
   const MeasurementModel& model_;
   const DatumSpace& datum_;
   const Eigen::MatrixXd& data_;
-  const GaussianPrior& wide_;
+  const GaussianPrior& prior_;
   std::vector<ErrorStretch> stretches_;
   Eigen::MatrixXd posterior_;
-  Eigen::MatrixXd prior_covariance_;
+  Eigen::MatrixXd wide_covariance_;
   Eigen::MatrixXd hidden_;  ///< columns: hidden directions, their outer products the hidden covariance
   RankAnalysis analysis_;
 };
@@ -278,7 +306,17 @@ class RankAnalyser {
 RankAnalysis analyse_rank(const MeasurementModel& model, const DatumSpace& datum, const Eigen::MatrixXd& data,
                           const GaussianPrior& wide) {
   if (datum.size() == 0) return {};
-  return RankAnalyser(model, datum, data, wide).run();
+  return RankAnalyser(model, datum, data, wide, wide).run();
+}
+
+RankAnalysis judge_by_roughness(const MeasurementModel& model, const DatumSpace& datum,
+                                const Eigen::MatrixXd& data, const GaussianPrior& wide,
+                                const std::vector<SmoothingTerm>& terms, const RankAnalysis& rank) {
+  const GaussianPrior prior = with_settled_roughness(data, terms, wide);
+  RankAnalysis judged = RankAnalyser(model, datum, data, prior, wide).run();
+  judged.report.rank = rank.report.rank;
+  judged.on_invisible = rank.on_invisible;
+  return judged;
 }
 
 }  // namespace volcal

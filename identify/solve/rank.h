@@ -10,6 +10,11 @@
 ///
 /// Surfaces (surface_prior.h) count as known here: what they could hide of an error belongs to the error.
 ///
+/// This holds functions rough between the positions of the readings by 0.1 mm or rad. Where readings settle
+/// how rough a function is, what it may be between its positions is three times as rough at most, and an
+/// error that the first analysis takes for invisible is judged by this (judge_by_roughness): a squareness
+/// from a grid of positions is what the grid says, for all that a straightness might do between its lines.
+///
 /// Where an error is not visible the prior stands on the invisible directions alone and pulls nothing that
 /// the readings determine. Where all are, it also stands, for the detail that smoothing holds, on directions
 /// that the readings determine, and changes their estimates by less than a hundredth of u.
@@ -52,6 +57,12 @@ struct RankAnalysis {
 /// `data`: normal matrix of the readings plus the user's priors on nuisance parameters, reduced coordinates.
 RankAnalysis analyse_rank(const MeasurementModel& model, const DatumSpace& datum, const Eigen::MatrixXd& data,
                           const GaussianPrior& wide);
+
+/// The analysis where errors are not visible with functions as rough as `terms` say, of which the readings
+/// settle three coefficients or more. What the adjustment holds stays that of `rank`.
+RankAnalysis judge_by_roughness(const MeasurementModel& model, const DatumSpace& datum,
+                                const Eigen::MatrixXd& data, const GaussianPrior& wide,
+                                const std::vector<SmoothingTerm>& terms, const RankAnalysis& rank);
 
 /// What an adjustment needs where the readings do not determine everything: adds the wide prior to `prior`,
 /// its mean where there was none.

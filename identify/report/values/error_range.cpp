@@ -15,6 +15,8 @@ ErrorRange error_range(const FitResult& result, const std::vector<ErrorTableRow>
     range.high = std::fmax(range.high, row.value);
     range.expanded = std::fmax(range.expanded, result.coverage_factor * row.u);
   }
+  // a table is held by the stated roughness where the readings say nothing
+  if (!error.visible) range.expanded = std::fmax(range.expanded, result.coverage_factor * error.u_rms);
   return range;
 }
 

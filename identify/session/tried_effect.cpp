@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "volcal/identify/criticism/diagnosis.h"
-#include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/words/sentences.h"
@@ -45,20 +44,29 @@ std::vector<TriedValue> tried_values(const FitResult& result, const WrittenEffec
 }
 
 /// Why the readings say nothing of the effect; empty when they do.
-std::string why_not_visible(const FitResult& result, const std::string& label) {
-  for (const Observability& error : result.rank.errors) {
-    if (error.symbol == MachineError(label) && !error.visible) return explanation(error.cause).reason;
-  }
-  for (const std::string& sentence : sentences(result.rank.invisible)) {
-    if (sentence.find(label) != std::string::npos) return sentence;
+std::string why_not_visible(const FitResult& result, const Effect& effect) {
+  for (const EffectAmplitude& amplitude : effect.amplitudes()) {
+    const auto found =
+        std::ranges::find(result.rank.errors, MachineError(amplitude.label), &Observability::symbol);
+    if (found != result.rank.errors.end() && !found->visible) return explanation(found->cause).reason;
   }
   return "";
 }
 
-Comparison judged_lines(const Campaign& campaign, const ModelSpec& model,
-                        const std::vector<std::vector<bool>>& rows, int threads,
-                        const TryProgress& progress) {
-  return compare(campaign, heldout_residuals(campaign, model, rows, {threads, true, progress}));
+void judge_by_held_out_lines(const Campaign& campaign, const ModelSpec& without, const ModelSpec& with,
+                             const TryOptions& options, TriedEffect& tried) {
+  const auto rows = judging_rows(campaign);
+  tried.judged =
+      std::ranges::any_of(rows, [](const auto& setup) { return std::ranges::count(setup, true) > 0; });
+  if (!tried.judged) return;
+  const auto left_by = [&](const ModelSpec& model, const TryProgress& progress) {
+    return heldout_residuals(campaign, model, rows, {options.threads, true, progress});
+  };
+  const auto before = left_by(without, part_of(options.progress, "held-out lines without it", 0.2, 0.4));
+  const auto after = left_by(with, part_of(options.progress, "held-out lines with it", 0.4, 0.6));
+  tried.without = compare(campaign, before);
+  tried.with = compare(campaign, after);
+  tried.gain = heldout_gain(campaign, before, after);
 }
 
 /// A pointer to the next step: nothing is drawn, and what no single name explains is reported as the scans
@@ -106,16 +114,8 @@ TriedEffect try_effect(const Campaign& campaign, const ModelSpec& model, const W
   TriedEffect tried;
   tried.status = result.status;
   tried.values = tried_values(result, effect);
-  tried.not_visible = why_not_visible(result, effect_label(*effect.made));
-  const auto rows = judging_rows(campaign);
-  tried.judged =
-      std::ranges::any_of(rows, [](const auto& setup) { return std::ranges::count(setup, true) > 0; });
-  if (tried.judged) {
-    tried.without = judged_lines(campaign, model, rows, options.threads,
-                                 part_of(options.progress, "held-out lines without it", 0.2, 0.4));
-    tried.with = judged_lines(campaign, with, rows, options.threads,
-                              part_of(options.progress, "held-out lines with it", 0.4, 0.6));
-  }
+  tried.not_visible = why_not_visible(result, *effect.made);
+  judge_by_held_out_lines(campaign, model, with, options, tried);
   tried.remains = what_remains(campaign, with, options);
   return tried;
 }

@@ -8,6 +8,7 @@
 
 #include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/criticism/data/diagnosis_data.h"
+#include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/standards/comparison.h"
 #include "volcal/model/description/campaign.h"
@@ -29,6 +30,7 @@ struct TriedEffect {
   FitStatus status = FitStatus::Ok;
   bool judged = false;       ///< the setups have lines to hold out
   Comparison without, with;  ///< of the same lines, seen by neither fit
+  HeldOutGain gain;          ///< of these
   Diagnosis remains;         ///< of the model with the effect: names one by one, nothing drawn
 
   /// Whether it is visible and its fit has converged.

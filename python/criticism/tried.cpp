@@ -57,6 +57,8 @@ py::object held_out_of(const TriedOf& of) {
   py::dict held_out;
   held_out["without"] = size_on_lines(of.tried.without);
   held_out["with"] = size_on_lines(of.tried.with);
+  held_out["chi2_less_by"] = of.tried.gain.chi2;
+  held_out["chi2_by_chance"] = of.tried.gain.by_chance;
   return held_out;
 }
 
@@ -81,8 +83,9 @@ void define_trial(py::module_& module) {
           "Status of the fit with it, as of a Result.")
       .def_property_readonly("held_out", &held_out_of,
                              "On lines that neither fit has seen, \"without\" and \"with\" it: observations, "
-                             "chi2, rms (m), angle_rms "
-                             "(rad). None where there are too few lines.")
+                             "chi2, rms (m), angle_rms (rad); \"chi2_less_by\" with it, and "
+                             "\"chi2_by_chance\", which noise alone makes of that, either way, with 95 % at "
+                             "most. None where there are too few lines.")
       .def_property_readonly(
           "verdict_of_what_remains",
           [](const TriedOf& of) { return std::string(to_string(of.tried.remains.verdict)); },

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 
 #include "tests/support/long_tests.h"
@@ -79,6 +81,45 @@ TEST(TryProgram, ParametersAreHeldOrEstimated) {
   ASSERT_EQ(estimated.exit_code, code) << estimated.errors;
   const auto found = nlohmann::json::parse(estimated.output).at("values").at(1);
   EXPECT_NEAR(found.at("u").get<double>(), 0.1, 0.02);  // the amplitude takes it all: the prior stays
+}
+
+/// 100 points with 0.1 um of noise, EZX of 20 um by x y, no reading above z = 0.
+std::string campaign_of_points(const std::filesystem::path& folder) {
+  std::ofstream points(folder / "points.csv");
+  points << "line,x_mm,y_mm,z_mm,ex_um,ey_um,ez_um\n";
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  for (int i = 0; i < 100; ++i) {
+    const double x = 125.0 * (i % 5), y = 100.0 * (i / 5 % 5), z = -100.0 * (i / 25);
+    points << i / 5 << ',' << x << ',' << y << ',' << z << ',' << noise(random) << ',' << noise(random) << ','
+           << x * y / 1e4 + noise(random) << '\n';
+  }
+  std::filesystem::copy_file(kTriedCampaign + "/machine.toml", folder / "machine.toml");
+  std::ofstream(folder / "campaign.toml")
+      << "format = \"volcal-campaign-1\"\nmachine = \"machine.toml\"\n[[setups]]\nname = \"V\"\n"
+         "instrument = \"volumetric-points\"\ndata = \"points.csv\"\ntool = \"none\"\n"
+         "noise = { constant_um = 0.1 }\n";
+  std::ofstream(folder / "model.toml")
+      << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n[functions]\n"
+         "default = { basis = \"legendre\", degree = 1 }\n[[effects]]\nkind = \"custom\"\n"
+         "target = \"EZX\"\nexpression = \"x * y / 10000 * max(0, z - 1000)\"\n";
+  return (folder / "campaign.toml").string() + " --model " + (folder / "model.toml").string();
+}
+
+/// The model has an effect that never acts, and whose text begins like what is tried.
+TEST(TryProgram, AnotherEffectThatIsNotVisibleIsNoReason) {
+  const testing::ScratchFolder scratch;
+  const std::string campaign = campaign_of_points(scratch.path());
+  const auto seen = run_program("try " + campaign + " 'EZX: x * y / 10000' --json");
+  ASSERT_EQ(seen.exit_code, 0) << seen.errors;
+  const auto json = nlohmann::json::parse(seen.output);
+  EXPECT_TRUE(json.at("visible").get<bool>());
+  EXPECT_NEAR(json.at("values").at(0).at("value").get<double>(), 1.0, 0.05);
+  EXPECT_GT(json.at("held_out").at("chi2_less_by"), json.at("held_out").at("chi2_by_chance"));
+  const auto absent = run_program("try " + campaign + " 'EZX: x * z / 10000'");
+  EXPECT_THAT(absent.output, ::testing::Not(HasSubstr("it predicts better"))) << absent.errors;
+  const auto unseen = run_program("try " + campaign + " 'EZX: x * max(0, z - 900)'");
+  EXPECT_THAT(unseen.output, HasSubstr("NOT VISIBLE: no reading changes when it changes")) << unseen.errors;
 }
 
 struct Refusal {

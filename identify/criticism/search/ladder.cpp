@@ -102,9 +102,13 @@ LadderStep fitted_figures(const LinearModel& model, const std::vector<bool>& hel
   const double dof = static_cast<double>(projector.observations()) + prior_rank -
                      static_cast<double>(projector.parameters());
   step.reduced_chi2 = projector.residual_squares() / std::max(1.0, dof);
-  step.rms_heldout = step.noise_floor = step.systematic = std::numeric_limits<double>::quiet_NaN();
+  step.rms_heldout = step.noise_floor = step.systematic = step.systematic_low = step.systematic_high =
+      step.heldout_loglik_gain = std::numeric_limits<double>::quiet_NaN();
   return step;
 }
+
+/// Of what is above the noise; NaN where that is not known.
+double root_above_noise(double squares) { return squares < 0.0 ? 0.0 : std::sqrt(squares); }
 
 /// `loglik` is the held-out log-likelihood of the step before, and becomes this one's.
 void set_heldout(const HeldoutFigures& figures, std::optional<double>& loglik, LadderStep& step) {
@@ -112,9 +116,9 @@ void set_heldout(const HeldoutFigures& figures, std::optional<double>& loglik, L
   const double spread = kCoverageFactor * figures.spread / figures.count;
   step.rms_heldout = std::sqrt(figures.squares / figures.count);
   step.noise_floor = std::sqrt(figures.expected / figures.count);
-  step.systematic = std::sqrt(std::max(0.0, excess));
-  step.systematic_low = std::sqrt(std::max(0.0, excess - spread));
-  step.systematic_high = std::sqrt(std::max(0.0, excess + spread));
+  step.systematic = root_above_noise(excess);
+  step.systematic_low = root_above_noise(excess - spread);
+  step.systematic_high = root_above_noise(excess + spread);
   step.heldout_loglik_gain = loglik ? figures.log_likelihood - *loglik : 0.0;
   loglik = figures.log_likelihood;
 }
@@ -155,20 +159,37 @@ std::vector<double> noise_variance(const NoiseData& data, std::span<const NoiseP
   return variance;
 }
 
-std::vector<std::vector<bool>> heldout_rows(const Campaign& campaign, double share) {
-  std::vector<std::vector<bool>> heldout;
-  const int every = share > 0.0 ? std::max(2, static_cast<int>(std::lround(1.0 / share))) : 0;
+namespace {
+
+/// Every how many lines one is held out; 0: none.
+int every_line_of(double share) {
+  return share > 0.0 ? std::max(2, static_cast<int>(std::lround(1.0 / share))) : 0;
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> heldout_groups(const Campaign& campaign, double share) {
+  std::vector<std::vector<int>> groups;
   for (const Setup& setup : campaign.setups) {
     const Readings& readings = setup.readings;
     std::map<std::int32_t, int> order;
     for (const std::int32_t line : readings.line) order.try_emplace(line, static_cast<int>(order.size()));
-    const bool by_line = static_cast<int>(order.size()) >= every;
+    const bool by_line = static_cast<int>(order.size()) >= every_line_of(share);
+    std::vector<int>& own = groups.emplace_back(readings.size());
+    for (std::size_t row = 0; row < own.size(); ++row)
+      own[row] = by_line ? order.at(readings.line[row]) : static_cast<int>(row) / kStretch;
+  }
+  return groups;
+}
+
+std::vector<std::vector<bool>> heldout_rows(const Campaign& campaign, double share) {
+  const int every = every_line_of(share);
+  std::vector<std::vector<bool>> heldout;
+  for (const std::vector<int>& groups : heldout_groups(campaign, share)) {
     const int place = static_cast<int>(heldout.size());
-    std::vector<bool>& rows = heldout.emplace_back(readings.size(), false);
-    for (std::size_t row = 0; every > 0 && row < rows.size(); ++row) {
-      const int group = by_line ? order.at(readings.line[row]) : static_cast<int>(row) / kStretch;
-      rows[row] = (group + place) % every == every - 1;
-    }
+    std::vector<bool>& rows = heldout.emplace_back(groups.size(), false);
+    for (std::size_t row = 0; every > 0 && row < rows.size(); ++row)
+      rows[row] = (groups[row] + place) % every == every - 1;
   }
   return heldout;
 }

@@ -13,6 +13,9 @@ namespace volcal {
 /// Every tenth line (or the given share) of every setup; where a setup has fewer lines than that, stretches
 /// of ten readings instead. Spread evenly, the same for every run.
 std::vector<bool> heldout_lines(const LinearModel& model, double share);
+/// Of every setup the line of each reading, counted from 0, or the stretch of ten that it stands in: what is
+/// held out together.
+std::vector<std::vector<int>> heldout_groups(const Campaign& campaign, double share);
 /// The same choice by setup and row.
 std::vector<std::vector<bool>> heldout_rows(const Campaign& campaign, double share);
 

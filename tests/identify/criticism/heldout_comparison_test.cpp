@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <stdexcept>
 
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit.h"
@@ -51,6 +53,84 @@ TEST(HeldOutLines, DoNotRepeatReadingsThatAreLeftOut) {
   const Campaign rest = without_rows(campaign, judging_rows(campaign));
   EXPECT_EQ(rest.setups[0].left_out.size(), 9U);
   EXPECT_TRUE(rest.setups[0].rows_left_out()[3]);
+}
+
+/// Readings of one setup, in units of their sigma.
+std::vector<ResidualRecord> records_of(const std::vector<double>& residuals) {
+  std::vector<ResidualRecord> records;
+  for (const double residual : residuals) {
+    ResidualRecord& record = records.emplace_back();
+    record.row = records.size() - 1;
+    record.sigma = 2e-6;
+    record.reading = residual * record.sigma;
+  }
+  return records;
+}
+
+/// Ten lines of two. The models differ by 2 sigma in the first four readings. The residuals that the nearer
+/// one leaves are +-1 everywhere, so that s^2 = 1; without it they are 2 more: 3^2 + 1 + 3^2 + 1 against 4.
+TEST(HeldOutGain, IsHeldAgainstWhatNoiseMakesOfIt) {
+  Campaign campaign;
+  campaign.setups = {setup_of(10, 2)};
+  std::vector<double> with(20), without(20);
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    with[i] = i % 2 == 0 ? 1.0 : -1.0;
+    without[i] = with[i] + (i < 4 ? 2.0 : 0.0);
+  }
+  const HeldOutGain gain = heldout_gain(campaign, records_of(without), records_of(with));
+  EXPECT_NEAR(gain.chi2, 16.0, 1e-9);
+  EXPECT_NEAR(gain.by_chance, 1.96 * 1.96, 1e-9);
+  EXPECT_TRUE(gain.is_better());
+  const HeldOutGain back = heldout_gain(campaign, records_of(with), records_of(without));
+  EXPECT_NEAR(back.chi2, -16.0, 1e-9);
+  EXPECT_NEAR(back.by_chance, gain.by_chance, 1e-9);
+  EXPECT_TRUE(back.is_worse());
+}
+
+/// As above, with noise that the readings of a line share: sums d e over the two lines are 4 and -4, their
+/// squares 32 in all against D = 16, twice what independent readings would make.
+TEST(HeldOutGain, ReadingsOfALineAreNotIndependent) {
+  Campaign campaign;
+  campaign.setups = {setup_of(10, 2)};
+  std::vector<double> with(20), without(20);
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    with[i] = i / 2 % 2 == 0 ? 1.0 : -1.0;
+    without[i] = with[i] + (i < 4 ? 2.0 : 0.0);
+  }
+  const HeldOutGain gain = heldout_gain(campaign, records_of(without), records_of(with));
+  EXPECT_NEAR(gain.chi2, 16.0, 1e-9);
+  EXPECT_NEAR(gain.by_chance, 2.0 * 1.96 * 1.96, 1e-9);
+}
+
+/// One parameter that is not there moves predictions by d = a g, a from other readings: noise makes a gain
+/// beyond what chance is said to make in one case in forty at most, however large a came out.
+TEST(HeldOutGain, NoiseAloneRarelyPassesForMore) {
+  Campaign campaign;
+  campaign.setups = {setup_of(60, 5)};
+  std::mt19937 random(20);
+  std::normal_distribution<double> noise;
+  constexpr int kCampaigns = 2000;
+  for (const double size : {0.02, 0.1, 0.3}) {
+    int better = 0;
+    for (int k = 0; k < kCampaigns; ++k) {
+      std::vector<double> with(300), without(300);
+      for (std::size_t i = 0; i < with.size(); ++i) {
+        without[i] = noise(random);
+        with[i] = without[i] - size * std::sin(0.1 * static_cast<double>(i));
+      }
+      better += heldout_gain(campaign, records_of(without), records_of(with)).is_better() ? 1 : 0;
+    }
+    EXPECT_LE(better, 0.035 * kCampaigns) << size;  // 2.5 % and three standard deviations
+  }
+}
+
+TEST(HeldOutGain, OfTheSamePredictionsIsNothing) {
+  Campaign campaign;
+  campaign.setups = {setup_of(10, 2)};
+  const auto records = records_of(std::vector<double>(20, 1.0));
+  EXPECT_EQ(heldout_gain(campaign, records, records).chi2, 0.0);
+  EXPECT_FALSE(heldout_gain(campaign, records, records).is_better());
+  EXPECT_THROW(heldout_gain(campaign, records, {}), std::invalid_argument);
 }
 
 /// A line of X there and back five times, without a stated direction: with the first pass held out, what is

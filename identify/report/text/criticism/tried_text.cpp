@@ -9,6 +9,7 @@
 
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/text/uncertain_number.h"
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
@@ -20,8 +21,7 @@ std::string tried_value_text(const TriedValue& value) {
   const std::string unit = value.unit.empty() ? "" : " " + value.unit;
   if (std::isnan(value.u))
     return fmt::format("{} {}{} (held)", value.name, short_number(value.value, 4), unit);
-  return fmt::format("{} {} +- {}{}", value.name, short_number(value.value, 4), short_number(value.u, 2),
-                     unit);
+  return fmt::format("{} {}{}", value.name, value_with_u(value.value, kCoverageFactor * value.u), unit);
 }
 
 std::string size_text(const Comparison& without, const Comparison& with) {
@@ -41,15 +41,18 @@ std::string size_text(const Comparison& without, const Comparison& with) {
 constexpr double kRoundingOfChi2 = 1e-6;
 
 std::string chi2_verdict(const TriedEffect& tried) {
-  const double before = tried.without.total.chi2, after = tried.with.total.chi2;
-  const double gain = before - after;
-  const bool is_same = std::abs(gain) <= kRoundingOfChi2 * std::max(before, after);
-  const std::string change =
-      is_same ? std::string("chi2 the same")
-              : fmt::format("chi2 {} by {}", gain > 0.0 ? "less" : "more", short_number(std::abs(gain), 3));
+  const HeldOutGain& gain = tried.gain;
+  const double rounding = kRoundingOfChi2 * std::max(tried.without.total.chi2, tried.with.total.chi2);
+  const bool is_same = std::abs(gain.chi2) <= rounding;
+  const std::string change = is_same ? std::string("chi2 the same")
+                                     : fmt::format("chi2 {} by {}", gain.chi2 > 0.0 ? "less" : "more",
+                                                   short_number(std::abs(gain.chi2), 3));
   if (!tried.not_visible.empty()) return change + ": no verdict on an effect that is not visible";
   if (is_same) return change + ": it predicts neither better nor worse";
-  return change + (gain > 0.0 ? ": it predicts better" : ": it predicts no better");
+  return fmt::format("{}, by chance up to {}: {}", change, short_number(gain.by_chance, 2),
+                     gain.is_better()  ? "it predicts better"
+                     : gain.is_worse() ? "it predicts worse"
+                                       : "no difference that the held-out readings could show");
 }
 
 std::string heldout_line(const TriedEffect& tried) {
@@ -121,7 +124,10 @@ std::string tried_json(const std::string& effect, const TriedEffect& tried) {
                                  {"values", values}};
   json["held_out"] = nullptr;
   if (tried.judged)
-    json["held_out"] = {{"without", judged_json(tried.without)}, {"with", judged_json(tried.with)}};
+    json["held_out"] = {{"without", judged_json(tried.without)},
+                        {"with", judged_json(tried.with)},
+                        {"chi2_less_by", tried.gain.chi2},
+                        {"chi2_by_chance", tried.gain.by_chance}};
   json["verdict_of_what_remains"] = to_string(tried.remains.verdict);
   json["remains"] = above_the_noise(tried.remains);
   add_notes(tried.remains.notes, json);

@@ -153,12 +153,13 @@ struct SetFinding {
   bool matters = false;  ///< it differs by more than U
 };
 
-/// One step of the ladder, all against the noise model at the last step. SI.
+/// One step of the ladder, all against the noise model at the last step. SI. Without held-out readings all
+/// that is of these is NaN.
 struct LadderStep {
   std::string model;  ///< "0", "1" ...
   std::string added;  ///< empty for the given model
   double rms_fit = 0.0;
-  double rms_heldout = 0.0;     ///< NaN without held-out readings
+  double rms_heldout = 0.0;
   double reduced_chi2 = 0.0;    ///< against the noise model
   double noise_floor = 0.0;     ///< root mean square noise of the held-out readings
   double systematic = 0.0;      ///< sqrt(max(0, MS - floor^2)) of the held-out readings

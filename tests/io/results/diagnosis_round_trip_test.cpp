@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -109,6 +110,22 @@ TEST(DiagnosisJson, RoundTrips) {
   EXPECT_TRUE(again.ranking[1].resolution);
   EXPECT_EQ(diagnosis_text(again), diagnosis_text(testing::hand_made_diagnosis()));
   EXPECT_THAT(diagnosis_text(again), HasSubstr("0.960  reversal EXX  reversal EYY"));
+}
+
+TEST(DiagnosisJson, WhatIsNotKnownOfHeldOutReadingsIsNoNumber) {
+  Diagnosis diagnosis = testing::hand_made_diagnosis();
+  for (LadderStep& step : diagnosis.ladder) {
+    step.rms_heldout = step.noise_floor = step.systematic = step.systematic_low = step.systematic_high =
+        step.heldout_loglik_gain = std::nan("");
+  }
+  const std::string text = diagnosis_json(diagnosis);
+  for (const char* key : {"systematic_low_um", "systematic_high_um", "heldout_loglik_gain"})
+    EXPECT_TRUE(Json::parse(text).at("ladder").at(0).at(key).is_null()) << key;
+  const std::string said = diagnosis_text(diagnosis_from_json(text, "diagnosis.json"));
+  const std::size_t from = said.find("Models compared");
+  const std::string ladder = said.substr(from, said.find("\n\n", from) - from);
+  EXPECT_EQ(ladder.find(" .. "), std::string::npos) << ladder;
+  EXPECT_THAT(ladder, HasSubstr("-  "));
 }
 
 /// Diagnoses that were written before scans saw rotations.

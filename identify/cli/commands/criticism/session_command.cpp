@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,6 +39,7 @@ struct SessionArguments {
 };
 
 std::string interval_text(const LadderStep& figures) {
+  if (std::isnan(figures.systematic)) return "-";
   return fixed_number(figures.systematic * kPerMicro, 2) + " (" +
          fixed_number(figures.systematic_low * kPerMicro, 2) + " to " +
          fixed_number(figures.systematic_high * kPerMicro, 2) + ")";

@@ -30,6 +30,11 @@ std::string edge(double si, double si_per_unit, int digits = 3) {
   return short_number(si / si_per_unit, digits);
 }
 
+std::string interval_in_um(double low, double high) {
+  if (std::isnan(low) || std::isnan(high)) return "-";
+  return edge(low, kMicro) + " .. " + edge(high, kMicro);
+}
+
 std::string ladder_table(const Diagnosis& diagnosis) {
   TextTable table({{"model", Align::Left},
                    {"added", Align::Left},
@@ -41,11 +46,10 @@ std::string ladder_table(const Diagnosis& diagnosis) {
                    {"log-likelihood"}},
                   "Models compared on held-out lines");
   for (const LadderStep& step : diagnosis.ladder) {
-    table.add_row(
-        {step.model, step.added.empty() ? "as given" : step.added, edge(step.rms_fit, kMicro),
-         edge(step.rms_heldout, kMicro), edge(step.noise_floor, kMicro), edge(step.systematic, kMicro),
-         fmt::format("{} .. {}", edge(step.systematic_low, kMicro), edge(step.systematic_high, kMicro)),
-         fixed_number(step.heldout_loglik_gain, 1)});
+    table.add_row({step.model, step.added.empty() ? "as given" : step.added, edge(step.rms_fit, kMicro),
+                   edge(step.rms_heldout, kMicro), edge(step.noise_floor, kMicro),
+                   edge(step.systematic, kMicro), interval_in_um(step.systematic_low, step.systematic_high),
+                   fixed_number(step.heldout_loglik_gain, 1)});
   }
   return table.text();
 }
@@ -231,14 +235,13 @@ std::string choice_table(const std::vector<EffectFinding>& effects, const SetFin
   for (std::size_t i = 0; i < std::min(effects.size(), set.members.size()); ++i) {
     const MemberFinding& member = set.members[i];
     const bool chosen = i == set.chosen, compared = !std::isnan(member.difference);
-    table.add_row(
-        {effects[i].label, edge(member.rms_heldout, kMicro), edge(member.systematic, kMicro),
-         fmt::format("{} .. {}", edge(member.systematic_low, kMicro), edge(member.systematic_high, kMicro)),
-         chosen || !compared ? "-" : edge(member.difference, kMicro, 2),
-         chosen || !compared ? "-" : edge(kCoverageFactor * member.difference_u, kMicro, 2),
-         chosen      ? "extended.toml"
-         : !compared ? "-"
-                     : alternative_model_file(place, i)});
+    table.add_row({effects[i].label, edge(member.rms_heldout, kMicro), edge(member.systematic, kMicro),
+                   interval_in_um(member.systematic_low, member.systematic_high),
+                   chosen || !compared ? "-" : edge(member.difference, kMicro, 2),
+                   chosen || !compared ? "-" : edge(kCoverageFactor * member.difference_u, kMicro, 2),
+                   chosen      ? "extended.toml"
+                   : !compared ? "-"
+                               : alternative_model_file(place, i)});
   }
   return table.text();
 }

@@ -49,7 +49,7 @@ const ladderTable = (ladder) => table([
   { name: 'RMS held out', unit: 'µm', cell: (row) => significant(row.rms_heldout_um, 4) },
   { name: 'Noise floor', unit: 'µm', cell: (row) => significant(row.noise_floor_um, 4) },
   { name: 'Systematic', unit: 'µm', cell: (row) => significant(row.systematic_um) },
-  { name: '95 % interval', unit: 'µm', cell: (row) => `${significant(row.systematic_low_um)} … ${significant(row.systematic_high_um)}` },
+  { name: '95 % interval', unit: 'µm', cell: (row) => (row.systematic_low_um === null ? '–' : `${significant(row.systematic_low_um)} … ${significant(row.systematic_high_um)}`) },
   { name: 'χ²/dof', cell: (row) => fixed(row.reduced_chi2, 3) },
   { name: 'Log-likelihood gain', unit: 'held out', cell: (row) => fixed(row.heldout_loglik_gain, 1) },
 ], ladder);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -95,10 +96,33 @@ DetectableEffect detectable(const EffectFinding& found, const Effect& effect, co
           visible,        amplitude.mdb,         amplitude.mdb * levers.rms(effect, shape, hardest)};
 }
 
+/// An effect that the user thought of: the place of the added effect that it is, or for which it stands as
+/// well; beside all of them otherwise.
+struct PlaceOfTried {
+  const FamilyTest* test;
+  std::optional<std::size_t> added = {};
+  bool is_rival = false;
+};
+
+/// A rival is judged in the place of what was added: beside it nothing is left for it.
+PlaceOfTried place_of(std::size_t family, const ModelState& reached) {
+  const std::vector<AddedEffect>& added = reached.added();
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    if (added[i].test.family == family) return {&added[i].test, i};
+  }
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    const auto rival = std::ranges::find(added[i].rivals, family, &FamilyTest::family);
+    if (rival != added[i].rivals.end()) return {&*rival, i, true};
+  }
+  return {&reached.tests().families[family]};
+}
+
 /// What held-out readings are left with once the user's effect is in the model reached.
-MemberFinding heldout_errors_with(const ModelState& reached, bool has_it, const FamilyTest& test) {
-  if (test.score.dof == 0) return {};
-  const LadderStep step = has_it ? last_step_of(reached) : ladder_step_beside(reached, test);
+MemberFinding heldout_errors_with(const ModelState& reached, const PlaceOfTried& tried) {
+  if (tried.test->score.dof == 0) return {};
+  const LadderStep step = tried.is_rival ? ladder_step_with(reached, *tried.added, *tried.test)
+                          : tried.added  ? last_step_of(reached)
+                                         : ladder_step_beside(reached, *tried.test);
   return {.rms_heldout = step.rms_heldout,
           .systematic = step.systematic,
           .systematic_low = step.systematic_low,
@@ -127,8 +151,7 @@ EffectFinding finding(const SearchSetting& setting, const FamilyTest& test) {
   for (const EffectAmplitude& amplitude : std::span(amplitudes).first(count)) {
     const auto at = static_cast<Eigen::Index>(out.amplitudes.size());
     const double u = std::sqrt(std::max(0.0, test.score.covariance(at, at)));
-    const bool by_degree = !family.orders.empty();
-    out.amplitudes.push_back({by_degree ? amplitude.part : amplitude.label, test.score.amplitude[at], u,
+    out.amplitudes.push_back({amplitude.label, test.score.amplitude[at], u,
                               u > 0.0 ? u * found_from : std::nan(""), amplitude.unit(),
                               amplitude.si_per_unit()});
   }
@@ -177,11 +200,9 @@ void list_tried(const ModelState& reached, std::span<const EffectSpec> own, Diag
     const auto family =
         static_cast<std::size_t>(std::ranges::find(families, name, &Family::name) - families.begin());
     if (family == families.size()) continue;  // the model has it
-    const auto added =
-        std::ranges::find(reached.added(), family, [](const AddedEffect& each) { return each.test.family; });
-    const FamilyTest& test = added != reached.added().end() ? added->test : reached.tests().families[family];
-    diagnosis.tried.push_back(finding(reached.setting(), test));
-    diagnosis.tried_errors.push_back(heldout_errors_with(reached, added != reached.added().end(), test));
+    const PlaceOfTried place = place_of(family, reached);
+    diagnosis.tried.push_back(finding(reached.setting(), *place.test));
+    diagnosis.tried_errors.push_back(heldout_errors_with(reached, place));
   }
 }
 

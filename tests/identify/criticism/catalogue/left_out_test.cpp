@@ -61,6 +61,8 @@ TEST(LeftOut, IsNamedAndGivenBack) {
   const EffectFinding& found = diagnosis.effects.front();
   EXPECT_EQ(found.name, EffectName::of_parts("left-out", "EBX", "x", "function"));
   EXPECT_LT(found.log10_p, -20.0);
+  ASSERT_GE(found.amplitudes.size(), 2u);
+  EXPECT_EQ(found.amplitudes[1].label, found.label + " P2") << "which error it is, in any table";
   EXPECT_EQ(names_of(errors_given_back(found.spec)), (std::vector<std::string>{"EBX"}));
   ModelSpec extended = model;
   ASSERT_TRUE(restore_left_out(found.spec, campaign_of_tracking().machine, extended));

@@ -99,6 +99,35 @@ TEST(Search, KeepsEverySetOfNamesThatTheReadingsDoNotSeparate) {
   EXPECT_EQ(std::ranges::count(diagnosis.findings, FindingCode::DiagnosisChoice, &Finding::code), 2);
 }
 
+/// What the user wrote is one more twin: it is told as its set tells it, in the place of what the model
+/// reached holds, not beside that.
+TEST(Search, AnOwnEffectThatIsARivalIsJudgedInThePlaceOfTheOther) {
+  sim::HiddenEffect tilt = hidden_beside("thermal-tilt", "EAZ", 1.2e-6);
+  tilt.options.set("channel", "column");
+  sim::Study campaign = hiding({tilt}, kGrid);
+  campaign.environment.channels[0].amplitude = 1.0;
+  const FittedStudy study(campaign);
+  DiagnoseOptions options;
+  options.climb = true;
+  options.figures = options.compare = false;
+  options.own = {
+      effect_spec("custom", {{"target", std::string("EAZ")}, {"expression", std::string("T_column - 20")}})};
+  const Diagnosis diagnosis = diagnose(study.simulated.campaign, study.result, options);
+  const auto sets = sets_of_alternatives(diagnosis);
+  ASSERT_EQ(sets.size(), 1U);
+  ASSERT_EQ(diagnosis.tried.size(), 1U);
+  const EffectFinding& tried = diagnosis.tried.front();
+  const auto member = std::ranges::find(*sets[0], tried.name, &EffectFinding::name);
+  ASSERT_NE(member, sets[0]->end());
+  EXPECT_LT(tried.log10_p, -10.0);
+  EXPECT_EQ(tried.log10_p, member->log10_p);
+  EXPECT_EQ(tried.gain, member->gain);
+  EXPECT_EQ(tried.amplitudes.front().value, member->amplitudes.front().value);
+  const MemberFinding& of_set =
+      diagnosis.sets[0].members[static_cast<std::size_t>(member - sets[0]->begin())];
+  EXPECT_NEAR(diagnosis.tried_errors.front().systematic, of_set.systematic, 1e-12);
+}
+
 /// A scan of both temperatures sees both effects at once, and does better than either name.
 TEST(Search, NamesTwoEffectsThatAScanTakesForOne) {
   sim::HiddenEffect first = hidden_beside("thermal-tilt", "EAZ", 2.5e-6), second = first;

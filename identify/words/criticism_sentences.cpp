@@ -140,14 +140,19 @@ std::string tried(const Finding& finding) {
   if (finding.has("systematic")) {
     const auto um = [&finding](const char* key) { return finding.number(key).si * 1e6; };
     text += fmt::format("; held-out readings keep {:.2g} um of systematic error with it", um("systematic"));
-    text += finding.flag("added") ? fmt::format(", {:.2g} um as given", um("systematic_given"))
-                                  : fmt::format(", {:.2g} um without it, {:.2g} um as given",
-                                                um("systematic_reached"), um("systematic_given"));
+    const bool is_explained = finding.flag("added") || finding.flag("alternative");
+    if (!is_explained) text += fmt::format(", {:.2g} um without it", um("systematic_reached"));
+    text += fmt::format(", {:.2g} um as given", um("systematic_given"));
   }
   if (finding.has("nearest"))
     text += fmt::format("; nearest to it in these readings is {}, cosine {:.3f}", finding.text("nearest"),
                         finding.number("cosine").si);
   return text + ".";
+}
+
+std::string without_surfaces(const Finding& finding) {
+  return "The model was criticised without what laws were looked for in the place of, " + names(finding) +
+         "; the extended model and `volcal extend` leave this out, too.";
 }
 
 std::string more_one_of(const Finding& finding) { return "More remains, one of: " + names(finding); }
@@ -244,6 +249,7 @@ std::span<const SentenceMaker> criticism_sentences() {
       {FindingCode::DiagnosisChoice, choice},
       {FindingCode::DiagnosisDrawn, drawn},
       {FindingCode::DiagnosisTried, tried},
+      {FindingCode::DiagnosisWithoutSurfaces, without_surfaces},
       {FindingCode::DiagnosisMoreOneOf, more_one_of},
       {FindingCode::DiagnosisMoreInCatalogue, more_in_catalogue},
       {FindingCode::DiagnosisMoreUnknown, more_unknown},

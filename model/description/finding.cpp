@@ -56,6 +56,7 @@ constexpr auto kFindingCodes = [] {
       {DiagnosisChoice, "diagnosis.choice", Severity::Note},
       {DiagnosisDrawn, "diagnosis.drawn", Severity::Note},
       {DiagnosisTried, "diagnosis.tried", Severity::Note},
+      {DiagnosisWithoutSurfaces, "diagnosis.without-surfaces", Severity::Note},
       {DiagnosisMoreOneOf, "diagnosis.more-one-of", Severity::Warning},
       {DiagnosisMoreInCatalogue, "diagnosis.more-in-catalogue", Severity::Warning},
       {DiagnosisMoreUnknown, "diagnosis.more-unknown", Severity::Warning},

@@ -52,6 +52,7 @@ enum class FindingCode : std::uint8_t {
   DiagnosisChoice,
   DiagnosisDrawn,
   DiagnosisTried,
+  DiagnosisWithoutSurfaces,
   DiagnosisMoreOneOf,
   DiagnosisMoreInCatalogue,
   DiagnosisMoreUnknown,

@@ -68,6 +68,7 @@ DiagnosisOf diagnose_campaign(const std::shared_ptr<Campaign>& campaign, const M
     options.planning.separate.push_back(effect_spec_of(effect, campaign->machine, campaign.get()));
   for (const WrittenEffect& tried : written_effects("try_effects", try_effects, parameters))
     options.own.push_back(tried.spec);
+  const ModelSpec given = spec;
   for (const std::string& text : formula)
     std::ranges::move(asked_laws(text, spec), std::back_inserter(options.asked_laws));
   options.progress = progress_to(progress);
@@ -75,6 +76,7 @@ DiagnosisOf diagnose_campaign(const std::shared_ptr<Campaign>& campaign, const M
     DiagnosisOf of{{}, campaign, spec};
     DiagnosedModel diagnosed = diagnosed_campaign(*campaign, of.model, options);
     of.diagnosis = std::move(diagnosed.diagnosis);
+    if (const auto taken = surfaces_taken_out(given, of.model)) of.diagnosis.findings.push_back(*taken);
     of.fit = std::make_shared<const FitResult>(std::move(diagnosed.fit));
     return of;
   });

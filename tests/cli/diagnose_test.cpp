@@ -96,6 +96,7 @@ TEST(DiagnoseProgram, LooksForALawInThePlaceOfTheModelsSurface) {
     const auto run = run_program("diagnose " + kData + "/small/campaign.toml --model " + model +
                                  " --json --formula \"" + formula + "\"");
     EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_THAT(run.output, HasSubstr("\"diagnosis.without-surfaces\""));
     return nlohmann::json::parse(run.output).at("asked_laws");
   };
   const auto by_name = asked("EYY: y x");
@@ -234,6 +235,38 @@ TEST_F(FromADiagnosis, TheModelGetsTheNextNumberByDefault) {
               HasSubstr("model-1.toml (1 effect)"));
   EXPECT_THAT(run_program("extend " + output_ + from + " --rank 2").output,
               HasSubstr("model-2.toml (2 effects)"));
+}
+
+/// A model with a surface was criticised without it (--formula), and a surface of the same variables was
+/// drawn anew: it replaces the old one. Another surface of the model stays.
+TEST_F(FromADiagnosis, TheSurfaceInWhosePlaceLawsWereLookedForIsTakenOut) {
+  std::ofstream(model_, std::ios::app)
+      << "[[effects]]\nkind = \"empirical\"\ntarget = \"EYY\"\ndrivers = \"x y\"\n"
+      << "[[effects]]\nkind = \"empirical\"\ntarget = \"EXX\"\ndrivers = \"z\"\n";
+  Diagnosis diagnosis = testing::hand_made_diagnosis();
+  EffectFinding drawn;
+  drawn.spec.kind = "empirical";
+  drawn.spec.options.set("target", std::string("EYY"));
+  drawn.spec.options.set("drivers", std::string("x y"));
+  drawn.name = EffectName::of_parts("empirical", "EYY", "x y", "");
+  drawn.label = "surface EYY by x y";
+  diagnosis.effects = {drawn};
+  diagnosis.one_of.clear();
+  diagnosis.further_one_of.clear();
+  diagnosis.sets.clear();
+  write(diagnosis);
+  const auto beside = extend("--accepted");
+  EXPECT_EQ(beside.exit_code, 2) << "the model has it";
+  diagnosis.findings.push_back(
+      {FindingCode::DiagnosisWithoutSurfaces, {{"effects", std::vector<std::string>{"surface EYY by x y"}}}});
+  write(diagnosis);
+  const auto run = extend("--accepted --json");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const auto json = nlohmann::json::parse(run.output);
+  EXPECT_EQ(json.at("taken_out"), nlohmann::json({"surface EYY by x y"}));
+  EXPECT_EQ(json.at("effects"), 2);
+  EXPECT_THAT(content(output_), HasSubstr("target = \"EXX\""));
+  EXPECT_THAT(extend("--accepted").output, HasSubstr("taken out: surface EYY by x y\nadded: "));
 }
 
 TEST_F(FromADiagnosis, EveryFailureSaysWhatToDo) {

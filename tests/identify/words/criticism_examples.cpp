@@ -140,6 +140,21 @@ std::vector<WordedFinding> examples_of_criticism() {
          {"log10_p", FindingNumber{0.0}},
          {"tests", std::int64_t{400}}}},
        "Your own, a: these readings do not see it."},
+      {{FindingCode::DiagnosisTried,
+        {{"effect", "a"},
+         {"alternative", true},
+         {"visible", true},
+         {"gain", FindingNumber{45.6}},
+         {"log10_p", FindingNumber{-12.3}},
+         {"systematic", FindingNumber{0.11e-6}},
+         {"systematic_given", FindingNumber{0.72e-6}},
+         {"systematic_reached", FindingNumber{0.11e-6}},
+         {"tests", std::int64_t{400}}}},
+       "Your own, a: it is one of those that explain the readings (log10 p -12.3 with all 400 tests counted, "
+       "gain 45.6); held-out readings keep 0.11 um of systematic error with it, 0.72 um as given."},
+      {{FindingCode::DiagnosisWithoutSurfaces, {{"effects", Texts{"surface EZZ by x y"}}}},
+       "The model was criticised without what laws were looked for in the place of, surface EZZ by x y; the "
+       "extended model and `volcal extend` leave this out, too."},
       {{FindingCode::DiagnosisMoreOneOf, {{"effects", Texts{"a", "b"}}}}, "More remains, one of: a; b"},
       {{FindingCode::DiagnosisMoreInCatalogue},
        "More remains, and the catalogue has a name for it: extend the model and diagnose again, or climb "

@@ -133,7 +133,9 @@ int run_diagnose(const DiagnoseArguments& arguments) {
     std::ranges::move(asked_laws(text, criticised), std::back_inserter(options.asked_laws));
   ProgressBar bar("diagnose");
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
-  const DiagnosedModel diagnosed = diagnosed_campaign(campaign, criticised, options);
+  DiagnosedModel diagnosed = diagnosed_campaign(campaign, criticised, options);
+  if (const auto taken = surfaces_taken_out(model, criticised))
+    diagnosed.diagnosis.findings.push_back(*taken);
   const Diagnosis& diagnosis = diagnosed.diagnosis;
   bar.finish();
   if (!arguments.output.empty()) write_diagnosis(arguments, campaign, criticised, diagnosed);

@@ -12,6 +12,7 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/output_file.h"
 #include "volcal/identify/cli/options/parameter_option.h"
+#include "volcal/identify/criticism/asked_laws.h"
 #include "volcal/identify/criticism/catalogue/named_effect.h"
 #include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/criticism/data/effect_words.h"
@@ -47,7 +48,7 @@ struct ExtendArguments {
 
 /// What the new model has that the old one had not, in the user's words.
 struct Changes {
-  std::vector<std::string> given_back, added;
+  std::vector<std::string> taken_out, given_back, added;
 };
 
 std::vector<EffectFinding> chosen(const ExtendArguments& arguments, const Diagnosis& diagnosis) {
@@ -149,12 +150,16 @@ std::string path_from(const std::string& from, const std::string& file) {
 void report(const Changes& changes, const std::string& output, std::size_t effects,
             const std::vector<Finding>& notes, bool as_json) {
   if (as_json) {
-    nlohmann::ordered_json json = {
-        {"file", output}, {"effects", effects}, {"added", changes.added}, {"given_back", changes.given_back}};
+    nlohmann::ordered_json json = {{"file", output},
+                                   {"effects", effects},
+                                   {"added", changes.added},
+                                   {"given_back", changes.given_back},
+                                   {"taken_out", changes.taken_out}};
     add_notes(notes, json);
     fmt::print("{}\n", json_text(json, 2));
     return;
   }
+  for (const std::string& label : changes.taken_out) fmt::print("taken out: {}\n", label);
   for (const std::string& label : changes.given_back) fmt::print("given back: {}\n", label);
   for (const std::string& label : changes.added) fmt::print("added: {}\n", label);
   fmt::print("written: {} ({} effect{})\n", output, effects, effects == 1 ? "" : "s");
@@ -177,6 +182,7 @@ int run_extend(const ExtendArguments& arguments) {
   std::optional<Diagnosis> diagnosis;
   if (!arguments.diagnosis.empty()) {
     diagnosis = read_diagnosis(arguments.diagnosis);
+    changes.taken_out = take_out_surfaces(*diagnosis, model);
     for (const EffectFinding& effect : chosen(arguments, *diagnosis))
       add_found(effect, arguments, extended, changes);
   }

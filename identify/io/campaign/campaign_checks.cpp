@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "volcal/identify/io/campaign/readings_reader.h"
 #include "volcal/identify/text/text_file.h"
@@ -42,7 +43,9 @@ void check_noise(const Campaign& campaign, const Setup& setup) {
     for (const KeySchema& key : find_instrument(setup.instrument)->schema().noise_keys) {
       keys += (keys.empty() ? "" : ", ") + key.key + " = ...";
     }
-    fail(campaign, setup, "has neither a noise table nor a sigma column",
+    fail(campaign, setup,
+         std::string("states no noise of its instrument, neither by a noise table nor by a sigma column") +
+             (setup.repeatability > 0.0 ? "; repeatability_um is that of the machine" : ""),
          "add noise = { " + keys + " } or a column " +
              sigma_column(find_instrument(setup.instrument)->schema()));
   }

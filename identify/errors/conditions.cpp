@@ -6,6 +6,7 @@
 
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/effects/scale_expansions.h"
 #include "volcal/model/observation/campaign_binding.h"
 
 namespace volcal {
@@ -25,17 +26,9 @@ std::string_view origin_of(const RecordedRange& range) {
   return "";
 }
 
-/// Whether the model reduces the scale of an axis by this channel: a key of the machine file, or an effect
-/// that names an axis and a temperature.
+/// Whether the model reduces the scale of an axis by this channel.
 bool knows_expansion(const FitResult& result, const std::string& channel) {
-  const auto by_machine = [&](const Axis& axis) {
-    return axis.expansion.has_value() && axis.expansion->channel == channel;
-  };
-  const auto by_effect = [&](const EffectSpec& effect) {
-    return effect.options.text("axis").has_value() && effect.options.text("temperature") == channel;
-  };
-  return std::ranges::any_of(result.machine.axes, by_machine) ||
-         std::ranges::any_of(result.identified.effects, by_effect);
+  return expansion_channels(result.machine, result.identified).contains(channel);
 }
 
 double number_of(const std::string& name, const std::string& text) {

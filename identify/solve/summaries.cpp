@@ -8,6 +8,7 @@
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/effects/scale_expansions.h"
 #include "volcal/model/functions/registry.h"
 
 namespace volcal {
@@ -167,12 +168,7 @@ RecordedConditions recorded_conditions(const Campaign& campaign) {
 }
 
 void summarise_temperature(const Campaign& campaign, FitResult& result) {
-  const bool expands =
-      std::ranges::any_of(campaign.machine.axes, [](const Axis& a) { return a.expansion.has_value(); });
-  const bool expands_by_effect = std::ranges::any_of(result.identified.effects, [](const EffectSpec& effect) {
-    return effect.options.text("axis").has_value() && effect.options.text("temperature").has_value();
-  });
-  if (expands || expands_by_effect) return;
+  if (!expansion_channels(campaign.machine, result.identified).empty()) return;
   double sum = 0.0;
   std::size_t count = 0;
   for (const Setup& setup : campaign.setups) {

@@ -175,6 +175,9 @@ struct EffectSchema {
   /// Its drivers are, for given directions of approach and conditions, polynomials in the positions of linear
   /// axes, at most cubic in each.
   bool polynomial = false;
+  /// With its temperature the scales of the axes whose positioning errors it acts on expand, counted from the
+  /// reference temperature: at that it does nothing.
+  bool expands_scales = false;
   std::vector<KeySchema> keys;
   std::vector<NameWord> words = {};  ///< of its names, beyond those that all kinds have
   bool simulated = true;             ///< sim/known has it; the tests hold the two against each other

@@ -57,6 +57,7 @@ const EffectKind& common_expansion_effect() {
            "control has wrong for all axes; a length scale of the instrument that follows that temperature",
        .source = "ISO 230-3:2020 (thermal effects); ISO 1:2022 (20 degC)",
        .polynomial = true,
+       .expands_scales = true,
        .keys = {shared_axes_key("axes whose scales are of one material: \"X Y Z\""),
                 text_key("temperature", "channel: column T_<channel>_degC"),
                 amplitude_key("amplitude_um_per_m_K", "expansion of each beyond what the control corrects")}},

@@ -224,6 +224,7 @@ const EffectKind& scale_expansion_effect() {
            "is missing or wrong in the control; a temperature sensor that sits elsewhere than the scale",
        .source = "ISO/TR 16907:2015, 8.3; ISO 230-3 (thermal effects)",
        .polynomial = true,
+       .expands_scales = true,
        .keys = {axis_key("axis", "axis whose scale expands"),
                 text_key("temperature", "channel: column T_<channel>_degC"),
                 amplitude_key("amplitude_um_per_m_K", "coefficient of expansion")}},

@@ -7,6 +7,7 @@
 
 #include "volcal/identify/criticism/catalogue/named_effect.h"
 #include "volcal/identify/criticism/model_extension.h"
+#include "volcal/identify/io/campaign/machine_difference.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/text/text_file.h"

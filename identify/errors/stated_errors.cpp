@@ -31,6 +31,7 @@ class StatedLayout {
                                         std::string(edge_unit(symbol.component)), kMicro);
       block.location = symbol;
     }
+    for (const Axis& axis : machine.axes) add_expansion(axis, model);
     for (const EffectSpec& spec : model.effects) add_effect(spec, model.file);
     for (const auto& [tool, error] : model.tool_errors) add_tool(tool, error);
     layout_.size = size();
@@ -71,6 +72,14 @@ class StatedLayout {
     layout_.blocks.push_back(std::move(block));
     values_.push_back(value);
     return layout_.blocks.back();
+  }
+
+  void add_expansion(const Axis& axis, const ModelSpec& model) {
+    const auto known = model.expansions.find(axis.name);
+    if (!axis.expansion || known == model.expansions.end()) return;
+    add_block(ParameterKind::Expansion, expansion_parameter(axis.name),
+              known->second - axis.expansion->per_kelvin, "um/m/K", kMicro)
+        .is_held = true;
   }
 
   void add_effect(const EffectSpec& spec, const std::string& file) {
@@ -139,8 +148,9 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model) {
 
 bool states_errors(const ModelSpec& model) {
   return !model.locations.empty() || !model.effects.empty() || !model.tool_errors.empty() ||
-         std::ranges::any_of(model.functions,
-                             [](const auto& entry) { return !entry.second.coefficients.empty(); });
+         !model.expansions.empty() || std::ranges::any_of(model.functions, [](const auto& entry) {
+           return !entry.second.coefficients.empty();
+         });
 }
 
 std::vector<EffectSpec> effects_without_amplitude(const ModelSpec& model) {

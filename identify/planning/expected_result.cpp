@@ -51,7 +51,7 @@ class Expectation {
     result_.rank = rank_.report;
     result_.status = rank_.deficient ? FitStatus::RankDeficient : FitStatus::Ok;
     result_.functions = function_summaries(campaign_, spec_, datum_, terms_, covariance);
-    result_.identified = identified_model(spec_, model_.layout(), parameters_);
+    result_.identified = identified_model(spec_, campaign_.machine, model_.layout(), parameters_);
     result_.adjustment =
         std::make_shared<const Adjustment>(Adjustment{spec_, z_, base_prior_, terms_, sigma_});
     list_residuals();

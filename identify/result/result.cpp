@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcal/identify/result/identified_expansions.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/parameter_names.h"
 
@@ -75,6 +76,8 @@ ModelSpec model_of_result(const FitResult& result) {
     if (const ParameterBlock* block = result.layout.find_block(tool_parameter(tool.name)))
       model.tool_errors[tool.name] = result.parameters.segment<3>(block->offset);
   }
+  for (const IdentifiedExpansion& expansion : identified_expansions(result))
+    model.expansions[expansion.axis] = expansion.per_kelvin;
   if (!model.effects.empty()) model.conditions = of_campaign(result.conditions);
   for (const auto& [axis, ends] : measured_positions(result)) {
     if (!result.machine.has_axis(axis)) continue;

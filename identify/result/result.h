@@ -176,9 +176,9 @@ std::vector<Finding> contradictions(const FitResult& result);
 /// First and last position with readings of every axis that has functions, m or rad.
 std::map<AxisName, std::pair<double, double>> measured_positions(const FitResult& result);
 
-/// The identified model with the errors of tools' offsets, the positions that were measured, where these are
-/// not the whole travel, and, where it has effects, the conditions: it says of an error at any position and
-/// of any tool what the result says.
+/// The identified model with the errors of tools' offsets, the expansions of scales, the positions that were
+/// measured, where these are not the whole travel, and, where it has effects, the conditions: it says of an
+/// error at any position and of any tool what the result says.
 ModelSpec model_of_result(const FitResult& result);
 
 }  // namespace volcal

@@ -29,7 +29,7 @@ constexpr double kUnheldNuisance = 1.0;  // m or rad: far wider than anything a 
 
 bool is_frozen_with_the_model(const ParameterBlock& block) {
   return block.kind == ParameterKind::Location || block.kind == ParameterKind::Effect ||
-         block.kind == ParameterKind::EffectShape || block.is_held;
+         block.kind == ParameterKind::EffectShape || block.kind == ParameterKind::Expansion || block.is_held;
 }
 
 /// Model parameters' place in both the fit's and the evaluation's vectors (the same model gives the same
@@ -145,6 +145,15 @@ PredictionUncertainty prediction_uncertainty(const Prediction& prediction, const
   return {std::move(u), absorbed * open.covariance * absorbed.transpose()};
 }
 
+/// Expansions of scales that the machine file calls uncertain and of which the model says nothing.
+void add_stated_expansions(const FitResult& identified, const ParameterLayout& layout, OpenErrors& open) {
+  for (const ParameterBlock& block : layout.blocks) {
+    const bool is_open = block.kind == ParameterKind::Expansion && !block.is_held &&
+                         identified.layout.find_block(block.name) == nullptr;
+    if (is_open) open.add({block.offset}, Eigen::MatrixXd::Constant(1, 1, std::pow(block.prior_sigma[0], 2)));
+  }
+}
+
 /// Those of an identified model.
 OpenErrors identified_errors(const FitResult& identified, const ParameterLayout& layout) {
   OpenErrors open;
@@ -154,6 +163,7 @@ OpenErrors identified_errors(const FitResult& identified, const ParameterLayout&
     open.place.push_back(target);
   }
   open.covariance = covariance_of(identified, fitted);
+  add_stated_expansions(identified, layout, open);
   return open;
 }
 

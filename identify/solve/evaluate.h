@@ -43,10 +43,12 @@ std::vector<Finding> differing_compensations(const Campaign& campaign, const Fit
 /// "errors.faded-beyond-readings" of every curve or surface with readings beyond those it was drawn from.
 std::vector<Finding> held_beyond_measured(const Campaign& campaign, const ModelSpec& model);
 
-/// Beyond model.measured errors keep their last value, as in tables.
+/// A frozen model: its errors and the expansions of scales are held (of those that it does not know, what the
+/// machine file states), and what comes with setups and uncertain tools is estimated. Beyond model.measured
+/// errors keep their last value, as in tables.
 /// `identified` supplies the covariance when `model` is its identified model; null = predictions without u.
 /// Rotary axes that move in the campaign and of which the model has no errors add the wide prior of these to
-/// that u (unknown_rotary_axes.h).
+/// that u (unknown_rotary_axes.h), and expansions that the model does not know what the machine file says.
 /// Throws InputError when the campaign does not fit the model's machine.
 Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model,
                           const FitResult* identified = nullptr, int threads = 0);

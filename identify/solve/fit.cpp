@@ -439,7 +439,7 @@ class Identification {
     result_.functions = function_summaries(campaign_, spec_, *datum_, terms_, reduced_covariance_);
     result_.rank = rank_.report;
     complete_observability(campaign_, result_);
-    result_.identified = identified_model(spec_, model_.layout(), parameters_);
+    result_.identified = identified_model(spec_, campaign_.machine, model_.layout(), parameters_);
     summarise_temperature(campaign_, result_);
     result_.conditions = recorded_conditions(campaign_);
     result_.standing = standing_rotary_axes(campaign_);
@@ -502,7 +502,7 @@ FitResult fit(const Campaign& campaign, const ModelSpec& spec, const FitOptions&
   }
   check_drivers_vary(campaign, spec);
   use_single_threaded_blas();
-  return Identification(campaign, with_uncertain_tools_open(campaign, spec), options).run();
+  return Identification(campaign, with_uncertain_values_open(campaign, spec), options).run();
 }
 
 }  // namespace volcal

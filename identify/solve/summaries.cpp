@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/effects/scale_expansions.h"
@@ -93,7 +94,7 @@ void complete_observability(const Campaign& campaign, FitResult& result) {
   }
 }
 
-ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
+ModelSpec identified_model(const ModelSpec& spec, const Machine& machine, const ParameterLayout& layout,
                            const Eigen::VectorXd& parameters) {
   ModelSpec identified = spec;
   identified.file.clear();
@@ -108,6 +109,11 @@ ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
   }
   for (const ParameterBlock& block : layout.blocks) {
     if (block.location) identified.locations[*block.location] = parameters[block.offset];
+  }
+  for (const Axis& axis : machine.axes) {
+    const ParameterBlock* block = layout.find_block(expansion_parameter(axis.name));
+    if (axis.expansion && block != nullptr)
+      identified.expansions[axis.name] = axis.expansion->per_kelvin + parameters[block->offset];
   }
   for (EffectSpec& effect : identified.effects) {
     const auto made = find_effect(effect.kind)->make(effect, spec.file);

@@ -25,7 +25,7 @@ double mean_uncertainty(const Campaign& campaign, const FitResult& result, const
 void complete_observability(const Campaign& campaign, FitResult& result);
 
 /// `spec` with explicit knots and the values of `parameters`; can be loaded again.
-ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
+ModelSpec identified_model(const ModelSpec& spec, const Machine& machine, const ParameterLayout& layout,
                            const Eigen::VectorXd& parameters);
 
 /// Ranges of temperatures, time and feed that the readings were recorded with.

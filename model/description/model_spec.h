@@ -55,6 +55,9 @@ struct ModelSpec {
   /// What tools' offsets are known to be wrong by, actual minus stated, m (an identified model). A tool whose
   /// offset the machine file calls uncertain is estimated anew by a fit; that of any other tool is held.
   std::map<std::string, Eigen::Vector3d> tool_errors;
+  /// Coefficients of expansion of scales, 1/K, in place of those of the machine file (an identified model),
+  /// which has the temperature. One that the machine file calls uncertain is estimated anew by a fit.
+  std::map<AxisName, double> expansions;
   std::vector<EffectSpec> effects;
   PriorWidths priors;
   /// Positions with readings that stated errors follow from, m or rad, first and last: beyond them errors

@@ -131,10 +131,13 @@ ModelSpec with_rotary_errors(const Machine& machine, ModelSpec model, const std:
   return model;
 }
 
-ModelSpec with_uncertain_tools_open(const Campaign& campaign, ModelSpec model) {
+ModelSpec with_uncertain_values_open(const Campaign& campaign, ModelSpec model) {
   for (const Setup& setup : campaign.setups) {
     const Tool& tool = campaign.machine.tools[setup.tool];
     if (tool.offset_sigma > 0.0) model.tool_errors.erase(tool.name);
+  }
+  for (const Axis& axis : campaign.machine.axes) {
+    if (axis.expansion && axis.expansion->per_kelvin_sigma > 0.0) model.expansions.erase(axis.name);
   }
   return model;
 }

@@ -42,9 +42,9 @@ FunctionSpec usual_function(const Axis& axis);
 ModelSpec with_rotary_errors(const Machine& machine, ModelSpec model, const std::vector<AxisName>& moving,
                              const std::vector<LocationSymbol>& locations);
 
-/// The model without what it says of tools of the campaign whose offset the machine file calls uncertain:
-/// readings of a fit tell that, from the stated offset on.
-ModelSpec with_uncertain_tools_open(const Campaign& campaign, ModelSpec model);
+/// The model without what it says of what the machine file calls uncertain, offsets of the campaign's tools
+/// and expansions of scales: readings of a fit tell that, from the stated value on.
+ModelSpec with_uncertain_values_open(const Campaign& campaign, ModelSpec model);
 
 /// Error motions with a function: of a linear axis all, of a rotary one those that the model names. The
 /// function may be the basis "zero", which has no parameters.

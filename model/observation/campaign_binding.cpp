@@ -261,10 +261,14 @@ class CampaignBinder {
   void add_expansion(const Axis& axis) {
     if (!axis.expansion) return;
     int parameter = -1;
-    if (axis.expansion->per_kelvin_sigma > 0.0) {
+    const auto known = spec_.expansions.find(axis.name);
+    const bool is_known = known != spec_.expansions.end();
+    if (axis.expansion->per_kelvin_sigma > 0.0 || is_known) {
       ParameterBlock block =
           scalar_block(ParameterKind::Expansion, expansion_parameter(axis.name), "um/m/K", kMicro);
+      if (is_known) block.guess[0] = known->second - axis.expansion->per_kelvin;
       block.prior_sigma[0] = axis.expansion->per_kelvin_sigma;
+      block.is_held = axis.expansion->per_kelvin_sigma == 0.0;
       parameter = add_block(std::move(block));
     }
     ExpansionBinding expansion;

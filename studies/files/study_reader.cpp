@@ -6,9 +6,11 @@
 #include <limits>
 
 #include "volcal/identify/errors/errors_of_tables.h"
+#include "volcal/identify/io/campaign/machine_difference.h"
 #include "volcal/identify/io/campaign/machine_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
+#include "volcal/identify/result/identified_expansions.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
@@ -199,11 +201,11 @@ sim::TruthSettings known_truth(const std::string& path, const Machine& machine, 
   if (truth.errors->file.empty()) truth.errors->file = path;
   truth.notes = findings_of_tables(known);
   for (const Axis& axis : machine.axes) {
-    if (!axis.expansion) continue;
-    ScaleExpansion exact = *axis.expansion;
-    if (const auto* block = known.layout.find_block(expansion_parameter(axis.name)))
-      exact.per_kelvin += known.parameters[block->offset];
-    truth.expansions[axis.name] = exact;
+    if (axis.expansion) truth.expansions[axis.name] = *axis.expansion;
+  }
+  for (const IdentifiedExpansion& identified : identified_expansions(known)) {
+    const auto expansion = truth.expansions.find(identified.axis);
+    if (expansion != truth.expansions.end()) expansion->second.per_kelvin = identified.per_kelvin;
   }
   for (const Tool& tool : machine.tools) {
     if (const auto* block = known.layout.find_block(tool_parameter(tool.name)))

@@ -47,7 +47,7 @@ std::vector<ComparedModel> compared(const Campaign& campaign, const FitResult& r
   models.push_back(compared_model("nominal machine", campaign, validation.before.residuals));
   models.push_back(compared_model("identified", campaign, validation.after.residuals));
   models.back().circle_causes =
-      circle_causes(campaign, result.identified, validation.after.parameters,
+      circle_causes(campaign, model_of_result(result), validation.after.parameters,
                     result.covariance.isZero(0.0) ? nullptr : &result, models.back().figures.circles);
   models.back().rotary = rotary_pictures(result, campaign);
   return models;

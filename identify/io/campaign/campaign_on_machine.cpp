@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "volcal/identify/io/campaign/model_reader.h"
+#include "volcal/identify/io/campaign/machine_difference.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kLargestLength_mm = 1e5;
 constexpr double kLargestTravel_deg = 36000.0;
-constexpr double kLargestExpansion_um_per_m_K = 100.0;
 
 /// A position of the machine: three coordinates that lie within 100 m.
 Eigen::Vector3d position_or_zero(const TomlTable& table, const std::string& key) {

@@ -11,6 +11,8 @@ namespace volcal {
 
 /// Format line of machine files.
 inline constexpr const char* kMachineFormat = "volcal-machine-1";
+/// Largest magnitude of a coefficient of expansion that is believed.
+inline constexpr double kLargestExpansion_um_per_m_K = 100.0;
 
 /// Reads a machine file. `named_at`: line of another file that names this one. Without [datum] the primary
 /// axis is X and the secondary Y; reference_point_mm and centre_mm default to the origin; `endless` of a

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "volcal/identify/io/campaign/machine_difference.h"
 #include "volcal/identify/io/campaign/machine_reader.h"
 #include "volcal/identify/text/nearest_name.h"
 #include "volcal/identify/text/text_file.h"
@@ -20,9 +21,10 @@ namespace volcal {
 namespace {
 
 constexpr std::int64_t kMostIntervals = 500;
-constexpr double kSamePosition = 1e-9;  // m or rad
 constexpr const char* kToolErrorKey = "offset_error_um";
 constexpr double kLargestToolError = 0.01;  // m
+constexpr const char* kExpansionKey = "expansion_um_per_m_K";
+constexpr double kSamePosition = 1e-9;  // m or rad
 
 std::string coefficient_key(ErrorSymbol symbol) {
   return "coefficients_" + std::string(edge_unit(symbol.component));
@@ -52,6 +54,7 @@ class ModelReader {
     read_locations();
     read_priors();
     read_measured();
+    read_axes();
     read_tools();
     read_effects();
     document.reject_unknown();
@@ -333,6 +336,26 @@ class ModelReader {
     if (variable->kind == Variable::Kind::Feed) spec_.conditions.feed = range;
   }
 
+  /// "[axes.X] expansion_um_per_m_K = 10.05"
+  void read_axes() {
+    const auto axes = root_.table("axes");
+    if (!axes) return;
+    for (const std::string& name : axes->keys()) {
+      const auto axis = name.size() == 1 ? axis_from_letter(name[0]) : std::nullopt;
+      if (!axis || !machine_.has_axis(*axis))
+        axes->fail(name, "axes." + printable(name) + " is not an axis of this machine",
+                   "write [axes.X] with the letter of an axis of the machine file");
+      const TomlTable table = axes->required_table(name);
+      spec_.expansions[*axis] =
+          table.required_number(kExpansionKey, {-kLargestExpansion_um_per_m_K, kLargestExpansion_um_per_m_K});
+      if (!machine_.axis(*axis).expansion)
+        table.fail(kExpansionKey,
+                   table.path() + "." + kExpansionKey + ": the machine file has no temperature of this scale",
+                   std::string("give the machine file ") + kExpansionKey +
+                       " and temperature of this axis, or remove the line");
+    }
+  }
+
   /// "[tools.long] offset_error_um = [1.2, -3.4, 0.5]"
   void read_tools() {
     const auto tools = root_.table("tools");
@@ -426,41 +449,7 @@ void require_no_folder(const std::string& path, const SourcePlace& named_at) {
         "tables state errors and no bases: write a model.toml, or give the result they were made of");
 }
 
-std::string axis_difference(const Axis& a, const Axis& b) {
-  const auto differs = [](double x, double y) { return std::abs(x - y) > kSamePosition; };
-  const std::string name(1, letter_of(a.name));
-  if (differs(a.travel_min, b.travel_min) || differs(a.travel_max, b.travel_max)) return "travel of " + name;
-  if (differs(a.home, b.home)) return "home of " + name;
-  if ((a.reference_point - b.reference_point).norm() > kSamePosition) return "reference point of " + name;
-  if ((a.centre - b.centre).norm() > kSamePosition) return "centre of " + name;
-  return "";
-}
-
 }  // namespace
-
-std::string machine_difference(const Machine& a, const Machine& b) {
-  const auto same_joint = [](const Joint& x, const Joint& y) {
-    return x.axis == y.axis && x.workpiece_side == y.workpiece_side;
-  };
-  if (!std::ranges::equal(a.structure.joints, b.structure.joints, same_joint)) {
-    return "structure \"" + a.structure.code + "\" and \"" + b.structure.code + "\"";
-  }
-  if (a.datum.primary != b.datum.primary || a.datum.secondary != b.datum.secondary) return "datum";
-  for (std::size_t i = 0; i < a.axes.size(); ++i) {
-    if (std::string difference = axis_difference(a.axes[i], b.axes[i]); !difference.empty())
-      return difference;
-  }
-  return "";
-}
-
-void require_machine_of_model(const Machine& own, const Machine& machine, const SourcePlace& place) {
-  const std::string difference = machine_difference(own, machine);
-  if (difference.empty()) return;
-  throw InputError(place,
-                   "the model is for another machine than " +
-                       (machine.file.empty() ? "this one" : machine.file) + ": " + difference,
-                   "use a model of the same machine");
-}
 
 ModelSpec read_model(const std::string& path, const Machine& machine, const SourcePlace& named_at) {
   require_no_folder(path, named_at);

@@ -38,12 +38,4 @@ struct ModelFile {
 ModelFile read_model_with_machine(const std::string& path, const SourcePlace& named_at = {},
                                   const Machine* otherwise = nullptr);
 
-/// First difference between two machines that makes the errors of one meaningless for the other, in words;
-/// empty when there is none. Names and tools may differ.
-std::string machine_difference(const Machine& a, const Machine& b);
-
-/// Throws InputError, at `place`, where a model of the machine `own` is given for `machine` and they differ
-/// (machine_difference()).
-void require_machine_of_model(const Machine& own, const Machine& machine, const SourcePlace& place);
-
 }  // namespace volcal

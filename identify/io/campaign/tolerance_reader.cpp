@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "volcal/identify/errors/stated_errors.h"
+#include "volcal/identify/io/campaign/machine_difference.h"
 #include "volcal/identify/io/campaign/machine_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/text/nearest_name.h"

@@ -126,6 +126,14 @@ std::string measured_toml(const ModelSpec& spec) {
   return text.empty() ? text : "\n[measured]\n" + text;
 }
 
+std::string axes_toml(const ModelSpec& spec) {
+  std::string text;
+  for (const auto& [axis, per_kelvin] : spec.expansions)
+    text += fmt::format("\n[axes.{}]\nexpansion_um_per_m_K = {}\n", letter_of(axis),
+                        edge_number(per_kelvin, kMicro));
+  return text;
+}
+
 std::string tools_toml(const ModelSpec& spec) {
   std::string text;
   for (const auto& [tool, error] : spec.tool_errors)
@@ -223,7 +231,7 @@ std::string model_toml(const ModelSpec& spec, const std::string& machine_path, c
         fmt::format("{}_{} = {}\n", symbol.name(), edge_unit(symbol.component), edge_number(value, kMicro));
   }
   for (const LocationSymbol& symbol : spec.locations_off) text += symbol.name() + " = \"zero\"\n";
-  text += priors_toml(spec.priors) + measured_toml(spec) + tools_toml(spec);
+  text += priors_toml(spec.priors) + measured_toml(spec) + axes_toml(spec) + tools_toml(spec);
   for (const EffectSpec& effect : spec.effects) text += effect_toml(effect);
   return text;
 }

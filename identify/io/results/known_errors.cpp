@@ -12,6 +12,7 @@
 #include "volcal/identify/errors/alignment.h"
 #include "volcal/identify/errors/errors_of_tables.h"
 #include "volcal/identify/errors/stated_errors.h"
+#include "volcal/identify/io/campaign/machine_difference.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/results/result_folder.h"
 #include "volcal/identify/text/text_file.h"

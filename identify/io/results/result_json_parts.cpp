@@ -325,6 +325,8 @@ Json model(const ModelSpec& spec) {
   add_prior("rotation", spec.priors.rotation);
   add_prior("squareness", spec.priors.squareness);
   for (const auto& [tool, error] : spec.tool_errors) json["tool_errors"][tool] = vector(error);
+  for (const auto& [axis, per_kelvin] : spec.expansions)
+    json["expansions"][std::string(1, letter_of(axis))] = number(per_kelvin);
   return json;
 }
 
@@ -343,6 +345,10 @@ ModelSpec model_from(const Json& json) {
   if (json.contains("tool_errors")) {
     for (const auto& [tool, error] : json.at("tool_errors").items())
       spec.tool_errors[tool] = vector3_from(error);
+  }
+  if (json.contains("expansions")) {
+    for (const auto& [axis, per_kelvin] : json.at("expansions").items())
+      spec.expansions[axis_name(axis)] = number(per_kelvin);
   }
   if (!json.contains("priors")) return spec;
   const Json& priors = json.at("priors");

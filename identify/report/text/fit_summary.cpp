@@ -13,10 +13,12 @@
 #include "volcal/identify/report/values/drawn_surfaces.h"
 #include "volcal/identify/report/values/error_range.h"
 #include "volcal/identify/report/values/residual_sample.h"
+#include "volcal/identify/result/identified_expansions.h"
 #include "volcal/identify/text/uncertain_number.h"
 #include "volcal/identify/words/noise_words.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/observation/channels.h"
 
@@ -96,6 +98,40 @@ std::string errors_table(const FitResult& result) {
   for (const SurfaceValues& surface : surface_values(result))
     surfaces += "  " + report::surface_line(surface, result.coverage_factor) + "\n";
   return text.text() + surfaces;
+}
+
+std::string expansions_table(const FitResult& result) {
+  const std::vector<IdentifiedExpansion> expansions = identified_expansions(result);
+  if (expansions.empty()) return {};
+  TextTable text({{"axis", Align::Left},
+                  {"temperature", Align::Left},
+                  {"identified"},
+                  {"U95"},
+                  {"machine file"},
+                  {"U95"}},
+                 "Expansion of scales [um/m/K]");
+  for (const IdentifiedExpansion& each : expansions) {
+    const auto value = [](double si) { return fixed_number(si * kPerMicro, 3); };
+    text.add_row({std::string(1, letter_of(each.axis)), temperature_of(each.channel).name(),
+                  value(each.per_kelvin), value(result.coverage_factor * each.u), value(each.stated),
+                  each.stated_u > 0.0 ? value(result.coverage_factor * each.stated_u) : "exact"});
+  }
+  return text.text();
+}
+
+/// "  expansion X by T_column: 10.05 +- 0.02 um/m/K (machine file 14.00 +- 5.88)"
+std::string expansions_lines(const FitResult& result) {
+  std::string text;
+  for (const IdentifiedExpansion& each : identified_expansions(result)) {
+    const auto words = [&](double value, double u) {
+      return value_with_u(value * kPerMicro, result.coverage_factor * u * kPerMicro);
+    };
+    text += fmt::format("  expansion {} by {}: {} um/m/K (machine file {})\n", letter_of(each.axis),
+                        temperature_of(each.channel).name(), words(each.per_kelvin, each.u),
+                        each.stated_u > 0.0 ? words(each.stated, each.stated_u)
+                                            : fixed_number(each.stated * kPerMicro, 3) + ", exact");
+  }
+  return text;
 }
 
 std::string setups_table(const FitResult& result) {
@@ -331,17 +367,17 @@ std::string rank_text(const FitResult& result) {
 std::string fit_text(const FitResult& result, const Campaign& campaign) {
   std::string text = headline(result) + reference_line(result);
   for (const std::string& part :
-       {errors_table(result), setups_table(result), variance_table(result), noise_table_text(result.noise),
-        outliers_table(result, campaign), notes(result)}) {
+       {errors_table(result), expansions_table(result), setups_table(result), variance_table(result),
+        noise_table_text(result.noise), outliers_table(result, campaign), notes(result)}) {
     if (!part.empty()) text += "\n" + part;
   }
   return text;
 }
 
 std::string fit_summary_text(const FitResult& result) {
-  return headline(result) + reference_line(result) + errors_lines(result) + effects_lines(result) +
-         setups_line(result) + noise_line(result.noise) + outliers_line(result) + rank_text(result) + "\n" +
-         leading_messages(result);
+  return headline(result) + reference_line(result) + errors_lines(result) + expansions_lines(result) +
+         effects_lines(result) + setups_line(result) + noise_line(result.noise) + outliers_line(result) +
+         rank_text(result) + "\n" + leading_messages(result);
 }
 
 }  // namespace volcal

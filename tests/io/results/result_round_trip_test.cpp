@@ -10,6 +10,7 @@
 #include "tests/support/broken_campaigns.h"
 #include "tests/support/scratch_folder.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/machine_difference.h"
 #include "volcal/identify/io/campaign/machine_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/campaign/toml_writer.h"

@@ -3,8 +3,10 @@
 #include <cmath>
 
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/result/identified_expansions.h"
 #include "volcal/identify/result/surface_values.h"
 #include "volcal/identify/words/sentences.h"
+#include "volcal/model/description/parameter_names.h"
 
 namespace volcal::report {
 namespace {
@@ -26,19 +28,28 @@ const char* kind_name(ParameterKind kind) {
   }
 }
 
+/// The coefficient that the machine file states, which the parameter corrects.
+double stated_value(const FitResult& result, const ParameterBlock& block) {
+  for (const IdentifiedExpansion& each : identified_expansions(result)) {
+    if (expansion_parameter(each.axis) == block.name) return each.stated;
+  }
+  return 0.0;
+}
+
 Json parameter_row(const FitResult& result, const ParameterBlock& block, int i) {
   const int index = block.offset + i;
   const double per_si = 1.0 / block.si_per_unit[static_cast<std::size_t>(i)];
   const double u = std::sqrt(parameter_variance(result, index));
-  const double value = result.parameters[index];
+  const double stated = block.kind == ParameterKind::Expansion ? stated_value(result, block) : 0.0;
+  const double value = stated + result.parameters[index], guess = stated + block.guess[i];
   return {{"name", block.name},
           {"label", block.labels[static_cast<std::size_t>(i)]},
           {"kind", kind_name(block.kind)},
           {"unit", shown_unit(block.units[static_cast<std::size_t>(i)])},
           {"value", rounded(value * per_si, kDigitsBesideU)},
           {"u", rounded(u * per_si, 3)},
-          {"guess", rounded(block.guess[i] * per_si, kDigitsBesideU)},
-          {"change", rounded((value - block.guess[i]) * per_si, kDigitsBesideU)},
+          {"guess", rounded(guess * per_si, kDigitsBesideU)},
+          {"change", rounded((value - guess) * per_si, kDigitsBesideU)},
           {"prior_sigma", rounded(block.prior_sigma[i] > 0 ? block.prior_sigma[i] * per_si : NAN, 3)},
           {"weak_default_prior", block.weak_default_prior}};
 }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -11,8 +12,11 @@
 #include "volcal/identify/criticism/proposals/hypothetical_campaign.h"
 #include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/identify/solve/summaries.h"
 #include "volcal/identify/statistics/normal.h"
-#include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
+#include "volcal/model/effects/scale_expansions.h"
 #include "volcal/model/instruments/registry.h"
 
 namespace volcal {
@@ -22,19 +26,58 @@ constexpr int kPointsPerAxis = 5;
 constexpr double kNoDifference = 1e-9;  // m: rounding and less than any machine moves
 constexpr double kAnyNoise = 1e-6;      // m: the points are predicted, not measured
 
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+/// Under which the volume is predicted.
+struct VolumeConditions {
+  std::map<std::string, double> temperature_degC;
+  std::optional<double> time;  ///< s
+  std::optional<double> feed;  ///< m/s
+
+  friend bool operator==(const VolumeConditions&, const VolumeConditions&) = default;
+
+  /// In its unit; absent for what is none of these or was not recorded.
+  std::optional<double> value(const Variable& variable) const {
+    if (variable.kind == Variable::Kind::Time) return time;
+    if (variable.kind == Variable::Kind::Feed && feed) return *feed / variable.unit().si_per_unit;
+    const auto channel = temperature_degC.find(variable.subject);
+    if (variable.kind != Variable::Kind::Temperature || channel == temperature_degC.end())
+      return std::nullopt;
+    return channel->second;
+  }
+};
+
+VolumeConditions mean_conditions(const Campaign& campaign) {
+  const RecordedConditions recorded = recorded_conditions(campaign);
+  VolumeConditions mean;
+  for (const auto& [channel, range] : recorded.temperature_degC) mean.temperature_degC[channel] = range.mean;
+  if (recorded.time) mean.time = recorded.time->mean;
+  if (recorded.feed) mean.feed = recorded.feed->mean;
+  return mean;
 }
 
-/// Of all readings that have it; nothing where none has.
-template <class Column>
-std::vector<double> of_all_setups(const Campaign& campaign, const Column& column) {
-  std::vector<double> all;
-  for (const Setup& setup : campaign.setups) {
-    const std::vector<double>& own = column(setup);
-    all.insert(all.end(), own.begin(), own.end());
+/// Those of the model and of all that may be part of it.
+std::set<std::string> channels_of_scales(const ModelState& reached, const FitResult& result) {
+  std::set<std::string> channels = expansion_channels(reached.model().campaign().machine, result.identified);
+  const auto add = [&](const FamilyTest& test) {
+    const Family& family = reached.setting().families[test.family];
+    if (family.effect) channels.merge(expansion_channels(*family.effect));
+  };
+  for (const AddedEffect& added : reached.added()) {
+    add(added.test);
+    for (const FamilyTest& rival : added.rivals) add(rival);
   }
-  return all;
+  return channels;
+}
+
+/// Those that tables are stated at, 20 degC where an expansion is known, and the mean ones of the campaign.
+std::vector<VolumeConditions> conditions_of_volume(const ModelState& reached, const FitResult& result) {
+  const VolumeConditions mean = mean_conditions(reached.model().campaign());
+  VolumeConditions tables = mean;
+  for (const std::string& channel : channels_of_scales(reached, result)) {
+    const auto recorded = tables.temperature_degC.find(channel);
+    if (recorded != tables.temperature_degC.end()) recorded->second = kReferenceTemperature_degC;
+  }
+  if (tables == mean) return {tables};
+  return {tables, mean};
 }
 
 /// Lattice of the measured positions of the linear axes, the others at 0.
@@ -57,22 +100,11 @@ std::vector<AxisPosition> lattice(const Campaign& campaign) {
   return poses;
 }
 
-void add_mean_conditions(const Campaign& campaign, std::size_t count, Readings& readings) {
-  const auto times = of_all_setups(
-      campaign, [](const Setup& setup) -> auto& { return setup.readings.time; });
-  if (!times.empty()) readings.time.assign(count, mean(times));
-  const auto feeds = of_all_setups(
-      campaign, [](const Setup& setup) -> auto& { return setup.readings.feed; });
-  if (!feeds.empty()) readings.feed.assign(count, mean(feeds));
-  for (const std::string& channel : temperature_channels(campaign)) {
-    static const std::vector<double> kNone;
-    const auto values = of_all_setups(
-        campaign, [&](const Setup& setup) -> auto& {
-          const auto found = setup.readings.temperature.find(channel);
-          return found == setup.readings.temperature.end() ? kNone : found->second;
-        });
-    readings.temperature[channel].assign(count, mean(values));
-  }
+void add_conditions(const VolumeConditions& conditions, std::size_t count, Readings& readings) {
+  if (conditions.time) readings.time.assign(count, *conditions.time);
+  if (conditions.feed) readings.feed.assign(count, *conditions.feed);
+  for (const auto& [channel, value] : conditions.temperature_degC)
+    readings.temperature[channel].assign(count, value);
 }
 
 /// The instrument that reads the displacements of the functional point themselves.
@@ -84,10 +116,10 @@ std::string reader_of_error_vectors() {
 }
 
 /// Error vectors at the lattice, with a tool, approached from one side.
-Setup points_of_volume(const Campaign& campaign, const std::vector<AxisPosition>& poses, std::size_t tool,
-                       std::int8_t direction) {
+Setup points_of_volume(const Campaign& campaign, const std::vector<AxisPosition>& poses,
+                       const VolumeConditions& conditions, std::size_t tool, std::int8_t direction) {
   Setup setup;
-  setup.name = "volume of tool " + std::to_string(tool) + (direction > 0 ? " +" : " -");
+  setup.name = "volume";
   setup.instrument = reader_of_error_vectors();
   setup.tool = tool;
   setup.options.set("alignment", std::string("none"));
@@ -101,20 +133,26 @@ Setup points_of_volume(const Campaign& campaign, const std::vector<AxisPosition>
     for (const AxisPosition& pose : poses) readings.position[a].push_back(pose[a]);
     readings.direction[a].assign(poses.size(), direction);
   }
-  add_mean_conditions(campaign, poses.size(), readings);
+  add_conditions(conditions, poses.size(), readings);
   return setup;
 }
 
-ExtraMeasurement volume_of(const Campaign& campaign, const std::vector<AxisPosition>& poses) {
+/// Under the conditions one after the other; as many points under each.
+ExtraMeasurement volume_of(const Campaign& campaign, const std::vector<AxisPosition>& poses,
+                           const std::vector<VolumeConditions>& conditions) {
   ExtraMeasurement volume;
   volume.is_path = false;
   std::vector<std::size_t> tools;
   for (const Setup& setup : campaign.setups) {
     if (std::ranges::find(tools, setup.tool) == tools.end()) tools.push_back(setup.tool);
   }
-  for (const std::size_t tool : tools) {
-    for (const std::int8_t direction : {std::int8_t{-1}, std::int8_t{1}})
-      volume.setups.push_back(points_of_volume(campaign, poses, tool, direction));
+  for (const VolumeConditions& each : conditions) {
+    for (const std::size_t tool : tools) {
+      for (const std::int8_t direction : {std::int8_t{-1}, std::int8_t{1}}) {
+        volume.setups.push_back(points_of_volume(campaign, poses, each, tool, direction));
+        volume.setups.back().name += " " + std::to_string(volume.setups.size());
+      }
+    }
   }
   return volume;
 }
@@ -126,13 +164,31 @@ struct MemberPrediction {
   Eigen::MatrixXd covariance;
 };
 
-/// Less what is common to all points.
-void centre(Eigen::MatrixXd& columns) {
+/// Less what is common to all points under the same conditions.
+void centre(Eigen::Index conditions, Eigen::MatrixXd& columns) {
+  const Eigen::Index points = columns.rows() / 3 / conditions;
   for (auto column : columns.colwise()) {
-    auto points = column.reshaped(3, column.size() / 3);
-    const Eigen::Vector3d common = points.rowwise().mean();
-    points.colwise() -= common;
+    for (Eigen::Index c = 0; c < conditions; ++c) {
+      auto own = column.segment(3 * points * c, 3 * points).reshaped(3, points);
+      const Eigen::Vector3d common = own.rowwise().mean();
+      own.colwise() -= common;
+    }
   }
+}
+
+/// What changes at a pose and drives any of the members.
+std::set<Variable> drivers_at_rest(const std::vector<const Effect*>& effects) {
+  std::set<Variable> drivers;
+  for (const Effect* effect : effects) {
+    for (const Variable& variable : effect->name().driver.variables()) {
+      if (variable.changes_at_rest()) drivers.insert(variable);
+    }
+  }
+  return drivers;
+}
+
+bool exceeds_uncertainty(const MemberFinding& member) {
+  return member.difference > std::max(kNoDifference, kCoverageFactor * member.difference_u);
 }
 
 class SetJudge {
@@ -140,8 +196,9 @@ class SetJudge {
   SetJudge(const ModelState& reached, const FitResult& result)
       : reached_(reached),
         poses_(lattice(reached.model().campaign())),
+        conditions_(conditions_of_volume(reached, result)),
         volume_(reached.model().campaign(), result, reached.model().noise_groups(),
-                {volume_of(reached.model().campaign(), poses_)}),
+                {volume_of(reached.model().campaign(), poses_, conditions_)}),
         rows_(volume_.rows(0)) {}
 
   SetFinding judge(std::size_t added) {
@@ -165,10 +222,7 @@ class SetJudge {
 
  private:
   static void find_farthest(SetFinding& set) {
-    const auto exceeds = [&set](std::size_t i) {
-      return set.members[i].difference >
-             std::max(kNoDifference, kCoverageFactor * set.members[i].difference_u);
-    };
+    const auto exceeds = [&set](std::size_t i) { return exceeds_uncertainty(set.members[i]); };
     for (std::size_t i = 0; i < set.members.size(); ++i) {
       if (i == set.chosen || std::isnan(set.members[i].difference)) continue;
       const bool further = !set.farthest || exceeds(i) > exceeds(*set.farthest) ||
@@ -234,9 +288,14 @@ class SetJudge {
       predictions[i] = {volume_.columns(0, rows_, *family(members[i]).effect, members[i].shape) -
                             rows * imitation.middleCols(first[i], count),
                         members[i].score.amplitude, members[i].score.covariance};
-      centre(predictions[i].columns);
+      centre(std::ssize(conditions_), predictions[i].columns);
     }
     const std::size_t chosen = *set.chosen;
+    std::vector<const Effect*> effects;
+    for (const FamilyTest& member : members) {
+      if (family(member).effect) effects.push_back(family(member).effect.get());
+    }
+    const std::set<Variable> drivers = drivers_at_rest(effects);
     for (std::size_t i = 0; i < members.size(); ++i) {
       if (i == chosen) {
         set.members[i].difference = set.members[i].difference_u = 0.0;
@@ -244,19 +303,40 @@ class SetJudge {
         state_difference(predictions[chosen], predictions[i],
                          gram.block(first[chosen], first[i], predictions[chosen].amplitude.size(),
                                     predictions[i].amplitude.size()),
-                         set.members[i]);
+                         drivers, set.members[i]);
       }
     }
   }
 
-  /// Where it is largest. `between`: of the two members' columns after projection.
+  /// Where it is largest, under conditions where that exceeds its uncertainty if there are any. `between`: of
+  /// the two members' columns after projection.
   void state_difference(const MemberPrediction& one, const MemberPrediction& other,
-                        const Eigen::MatrixXd& between, MemberFinding& member) const {
+                        const Eigen::MatrixXd& between, const std::set<Variable>& drivers,
+                        MemberFinding& member) const {
+    std::optional<MemberFinding> most;
+    for (std::size_t c = 0; c < conditions_.size(); ++c) {
+      MemberFinding here = member;
+      state_largest(one, other, between, c, here);
+      for (const Variable& driver : drivers) {
+        if (const auto value = conditions_[c].value(driver)) here.conditions.emplace_back(driver, *value);
+      }
+      const bool is_more =
+          !most || exceeds_uncertainty(here) > exceeds_uncertainty(*most) ||
+          (exceeds_uncertainty(here) == exceeds_uncertainty(*most) && here.difference > most->difference);
+      if (is_more) most = std::move(here);
+    }
+    member = std::move(*most);
+  }
+
+  /// Under the conditions of this number.
+  void state_largest(const MemberPrediction& one, const MemberPrediction& other,
+                     const Eigen::MatrixXd& between, std::size_t conditions, MemberFinding& member) const {
     const Eigen::VectorXd difference = other.columns * other.amplitude - one.columns * one.amplitude;
-    const Eigen::Index points = difference.size() / 3;
+    const Eigen::Index points = difference.size() / 3 / std::ssize(conditions_);
+    const Eigen::Index first_point = points * static_cast<Eigen::Index>(conditions);
     const auto of_point = [&](Eigen::Index i) { return difference.segment<3>(3 * i); };
-    Eigen::Index where = 0;
-    for (Eigen::Index i = 1; i < points; ++i) {
+    Eigen::Index where = first_point;
+    for (Eigen::Index i = first_point; i < first_point + points; ++i) {
       if (of_point(i).squaredNorm() > of_point(where).squaredNorm()) where = i;
     }
     member.difference = of_point(where).norm();
@@ -279,6 +359,7 @@ class SetJudge {
 
   const ModelState& reached_;
   std::vector<AxisPosition> poses_;
+  std::vector<VolumeConditions> conditions_;
   HypotheticalCampaign volume_;
   HypotheticalRows rows_;
   std::set<std::size_t> chosen_;  ///< families

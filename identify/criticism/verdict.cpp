@@ -74,6 +74,7 @@ void add_choices(Diagnosis& diagnosis) {
       finding.data["difference"] = FindingNumber{other.difference, "um", kMicro};
       finding.data["U"] = FindingNumber{kCoverageFactor * other.difference_u, "um", kMicro};
       finding.data["matters"] = set.matters;
+      add_conditions(other, finding);
     }
     diagnosis.findings.push_back(std::move(finding));
   }

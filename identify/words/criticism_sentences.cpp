@@ -80,8 +80,8 @@ std::string nearest(const Finding& finding) {
 std::string choice(const Finding& finding) {
   const std::string chosen = "The extended model goes on with the simplest, " + finding.text("chosen");
   if (!finding.has("difference")) return chosen + ".";
-  const std::string differ = fmt::format("{:.2g} um (U {:.2g} um)", finding.number("difference").in_unit(),
-                                         finding.number("U").in_unit());
+  const std::string differ = fmt::format("{:.2g} um (U {:.2g} um){}", finding.number("difference").in_unit(),
+                                         finding.number("U").in_unit(), at_conditions(finding));
   if (!finding.flag("matters"))
     return chosen + "; in the volume it does not matter: predictions differ by at most " + differ + ".";
   return chosen + "; it matters in the volume: with " + finding.text("other") +
@@ -237,6 +237,16 @@ std::string contradiction(const Finding& finding) {
       "tests counted{})",
       finding.text("leading"), finding.number("rms").si * 1e6, finding.number("log10_p").si,
       finding.count("tests"), readings);
+}
+
+std::string at_conditions(const Finding& finding) {
+  if (!finding.has("conditions")) return {};
+  const std::vector<std::string> names = finding.texts("conditions");
+  const std::vector<FindingNumber> values = finding.numbers("condition_values");
+  if (names.size() != values.size()) throw std::invalid_argument("there is not one value for each condition");
+  std::vector<double> at;
+  for (const FindingNumber& value : values) at.push_back(value.in_unit());
+  return " at " + place_in_words(variables_in(fmt::format("{}", fmt::join(names, " "))), at);
 }
 
 std::span<const SentenceMaker> criticism_sentences() {

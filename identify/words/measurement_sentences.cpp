@@ -40,8 +40,9 @@ std::string none_separates(const Finding& finding) {
   if (!finding.has("difference")) return none + ": they predict nearly the same readings.";
   return none + fmt::format(
                     " well enough to be worth its time. This does not matter: in the measured volume their "
-                    "predictions differ by at most {:.2g} um (U {:.2g} um).",
-                    finding.number("difference").in_unit(), finding.number("U").in_unit());
+                    "predictions differ by at most {:.2g} um (U {:.2g} um){}.",
+                    finding.number("difference").in_unit(), finding.number("U").in_unit(),
+                    at_conditions(finding));
 }
 
 std::string separates(const Finding& finding) {

@@ -6,6 +6,7 @@
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/variable.h"
 
 namespace volcal::testing {
 
@@ -54,7 +55,9 @@ inline Diagnosis hand_made_diagnosis() {
   diagnosis.sets[0].chosen = 0;
   diagnosis.sets[0].members = {chosen};
   diagnosis.sets[1].chosen = 1;
-  diagnosis.sets[1].members = {{2.5e-6, 1.25e-6, 1e-6, 1.5e-6, 4e-6, 0.5e-6, {0.25, 0.5, 0.125}}, chosen};
+  diagnosis.sets[1].members = {
+      {2.5e-6, 1.25e-6, 1e-6, 1.5e-6, 4e-6, 0.5e-6, {0.25, 0.5, 0.125}, {{temperature_of("air"), 21.5}}},
+      chosen};
   diagnosis.sets[1].farthest = 0;
   diagnosis.sets[1].matters = true;
   diagnosis.ranking = {other, finer, third};

@@ -80,6 +80,18 @@ std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis) {
   return std::span(diagnosis.unknown).subspan(drawn);
 }
 
+void add_conditions(const MemberFinding& member, Finding& finding) {
+  if (member.conditions.empty()) return;
+  std::vector<std::string> names;
+  std::vector<FindingNumber> values;
+  for (const auto& [variable, value] : member.conditions) {
+    names.push_back(variable.written());
+    values.push_back({value, std::string(variable.unit().suffix)});
+  }
+  finding.data["conditions"] = std::move(names);
+  finding.data["condition_values"] = std::move(values);
+}
+
 std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis) {
   std::vector<const std::vector<EffectFinding>*> sets;
   if (!diagnosis.one_of.empty()) sets.push_back(&diagnosis.one_of);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "volcal/identify/criticism/data/figure_data.h"
@@ -137,12 +138,18 @@ struct MemberFinding {
   double systematic = std::numeric_limits<double>::quiet_NaN();
   double systematic_low = std::numeric_limits<double>::quiet_NaN();
   double systematic_high = std::numeric_limits<double>::quiet_NaN();
-  /// Of what it makes of the machine from what the chosen member does, the largest over the volume, m; NaN
+  /// Of what it makes of the machine from what the chosen member does, the largest over the volume, under the
+  /// conditions of tables and the mean ones of the campaign, m; NaN
   /// for what is no effect.
   double difference = std::numeric_limits<double>::quiet_NaN();
   double difference_u = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> at = {};  ///< there, linear axes, m
+  /// Under which it is that large, of what drives members of the set: a temperature, time, feed, in its unit.
+  std::vector<std::pair<Variable, double>> conditions = {};
 };
+
+/// Says of a finding on that difference under which conditions it is so large.
+void add_conditions(const MemberFinding& member, Finding& finding);
 
 /// What a set of alternatives means (alternative_sets.h).
 struct SetFinding {

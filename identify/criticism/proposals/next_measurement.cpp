@@ -256,6 +256,7 @@ class Proposer {
     const MemberFinding& farthest = same->members[*same->farthest];
     finding.data["difference"] = FindingNumber{farthest.difference, "um", kMicro};
     finding.data["U"] = FindingNumber{kCoverageFactor * farthest.difference_u, "um", kMicro};
+    add_conditions(farthest, finding);
     return finding;
   }
 

@@ -222,6 +222,8 @@ Json set_json(const SetFinding& set, std::size_t place) {
     json["members"].back()["difference_u_um"] = micro(member.difference_u);
     json["members"].back()["at_mm"] = Json::array();
     for (const double at : member.at) json["members"].back()["at_mm"].push_back(at * kPerMilli);
+    for (const auto& [variable, value] : member.conditions)
+      json["members"].back()["conditions"][variable.column()] = finite_or_null(value);
     if (set.chosen && i != *set.chosen && !std::isnan(member.difference))
       json["members"].back()["model"] = alternative_model_file(place, i);
   }

@@ -13,8 +13,10 @@
 #include "tests/support/search_states.h"
 #include "volcal/identify/criticism/effect_findings.h"
 #include "volcal/identify/criticism/model_extension.h"
+#include "volcal/identify/errors/conditions.h"
 #include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
@@ -63,7 +65,7 @@ std::vector<PlaceOfVolume> places_of(const Campaign& campaign) {
 /// Displacements, less their mean.
 Eigen::Matrix3Xd predicted(const FitResult& result, const Tool& tool,
                            const std::vector<PlaceOfVolume>& places) {
-  const ErrorField field(result, tool);
+  const ErrorField field(result, tool, default_conditions(result));
   Eigen::Matrix3Xd all(3, static_cast<Eigen::Index>(places.size()));
   for (Eigen::Index i = 0; i < all.cols(); ++i) {
     const PlaceOfVolume& place = places[static_cast<std::size_t>(i)];
@@ -114,6 +116,52 @@ TEST(AlternativeSets, DifferAsRefitsWithEachDo) {
     EXPECT_TRUE(sets[0].matters);
     EXPECT_EQ(member.at.size(), 3U);
   }
+}
+
+/// X expands by 10 um/m/K with a column that is 6 K warmer than the air. At 20 degC of column and air, as
+/// tables state it, a model by the air has 60 um/m of it in EXX; at what was recorded the two are one.
+TEST(AlternativeSets, CountUnderTheConditionsOfTables) {
+  constexpr double kWarmer = 6.0, kPerKelvin = 10e-6;
+  sim::HiddenEffect expansion{.kind = "scale-expansion", .options = {}, .amplitude = kPerKelvin};
+  expansion.options.set("axis", std::string("X"));
+  expansion.options.set("channel", std::string("column"));
+  sim::Study hidden = hiding({expansion}, {5, 4, 3});
+  hidden.environment.channels = {{.name = "air", .start = 21.0, .drift = 3.0 / 3600.0},
+                                 {.name = "column", .start = 21.0 + kWarmer, .drift = 3.0 / 3600.0}};
+  const FittedStudy study(hidden);
+  const ModelState given = ModelState(study.model, setting_of(study.model)).tested();
+  const FamilyTest own = test_of(given, {"scale-expansion", "EXX", "T_column", ""});
+  const FamilyTest rival = test_of(given, {"scale-expansion", "EXX", "T_air", ""});
+  ModelState reached = given.with(own);
+  std::vector<AddedEffect> added = reached.added();
+  added.front().rivals = {rival};
+  reached = reached.with_comparisons(std::move(added));
+  const std::vector<SetFinding> sets = alternative_sets(reached, study.result);
+  ASSERT_EQ(sets.size(), 1U);
+  ASSERT_EQ(sets[0].members.size(), 2U);
+  const MemberFinding& member = sets[0].members[1];
+
+  const Campaign& campaign = study.simulated.campaign;
+  const auto places = places_of(campaign);
+  double least = 1e9, most = -1e9;
+  for (const PlaceOfVolume& place : places) {
+    least = std::min(least, place.position[0]);
+    most = std::max(most, place.position[0]);
+  }
+  const double by_hand = 0.5 * kPerKelvin * kWarmer * (most - least);  // off the mean of all places
+  EXPECT_NEAR(member.difference, by_hand, 0.1 * by_hand);
+  const auto prediction = [&](const FamilyTest& test) {
+    EffectSpec spec = finding(given.setting(), test).spec;
+    spec.options.set("amplitude", 0.0);
+    return predicted(refitted(study, spec), campaign.machine.tools[0], places);
+  };
+  const Eigen::Matrix3Xd difference = prediction(rival) - prediction(own);
+  const double largest = difference.colwise().norm().maxCoeff();
+  EXPECT_NEAR(member.difference, largest, 0.1 * largest);
+  EXPECT_TRUE(sets[0].matters);
+  const std::vector<std::pair<Variable, double>> at = {{temperature_of("air"), 20.0},
+                                                       {temperature_of("column"), 20.0}};
+  EXPECT_EQ(member.conditions, at);
 }
 
 EffectFinding reversal_of(const std::string& symbol) {

@@ -65,6 +65,16 @@ std::vector<WordedFinding> examples_of_criticism() {
          {"matters", true}}},
        "The extended model goes on with the simplest, a; it matters in the volume: with b predictions differ "
        "by up to 12 um (U 2.1 um)."},
+      {{FindingCode::DiagnosisChoice,
+        {{"chosen", "a"},
+         {"other", "b"},
+         {"difference", FindingNumber{30.1e-6, "um", 1e-6}},
+         {"U", FindingNumber{0.4e-6, "um", 1e-6}},
+         {"matters", true},
+         {"conditions", Texts{"T_air", "T_column"}},
+         {"condition_values", std::vector<FindingNumber>{{23.12, "degC"}, {20.0, "degC"}}}}},
+       "The extended model goes on with the simplest, a; it matters in the volume: with b predictions differ "
+       "by up to 30 um (U 0.4 um) at T_air = 23.1 degC, T_column = 20 degC."},
       {{FindingCode::DiagnosisDrawn,
         {{"effect", "EAY by y z"},
          {"largest", FindingNumber{12.34e-6, "urad", 1e-6}},

@@ -44,6 +44,7 @@ TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
   EXPECT_EQ(set.at("matters"), true);
   EXPECT_EQ(set.at("members").at(0).at("difference_um"), 4.0);
   EXPECT_EQ(set.at("members").at(0).at("at_mm").at(2), 125.0);
+  EXPECT_EQ(set.at("members").at(0).at("conditions").at("T_air_degC"), 21.5);
   EXPECT_EQ(set.at("members").at(0).at("model"), "alternative-2-1.toml");
   EXPECT_FALSE(set.at("members").at(1).contains("model"));
   const Json& unknown = document.at("unknown").at(0);

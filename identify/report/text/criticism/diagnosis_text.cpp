@@ -15,6 +15,7 @@
 #include "volcal/identify/words/noise_words.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 
 namespace volcal {
 namespace {
@@ -222,26 +223,40 @@ std::string effect_line(const EffectFinding& effect) {
   return fmt::format("  {}; log10 p {}\n", fmt::join(amplitudes, ", "), fixed_number(effect.log10_p, 1));
 }
 
+/// "T_column = 20 degC, T_air = 23.1 degC"; a dash where the difference depends on none.
+std::string conditions_words(const MemberFinding& member) {
+  if (member.conditions.empty()) return "-";
+  std::vector<Variable> variables;
+  std::vector<double> values;
+  for (const auto& [variable, value] : member.conditions) {
+    variables.push_back(variable);
+    values.push_back(value);
+  }
+  return place_in_words(variables, values);
+}
+
 std::string choice_table(const std::vector<EffectFinding>& effects, const SetFinding& set,
                          std::size_t place) {
-  TextTable table({{"with", Align::Left},
-                   {"rms held out [um]"},
-                   {"systematic [um]"},
-                   {"95 % interval [um]"},
-                   {"differs by up to [um]"},
-                   {"U [um]"},
-                   {"model", Align::Left}},
-                  "The error with each of them, and what it changes in the volume");
+  std::vector<TextColumn> columns = {{"with", Align::Left},  {"rms held out [um]"},     {"systematic [um]"},
+                                     {"95 % interval [um]"}, {"differs by up to [um]"}, {"U [um]"}};
+  const bool has_conditions = std::ranges::any_of(
+      set.members, [](const MemberFinding& member) { return !member.conditions.empty(); });
+  if (has_conditions) columns.push_back({"at", Align::Left});
+  columns.push_back({"model", Align::Left});
+  TextTable table(std::move(columns), "The error with each of them, and what it changes in the volume");
   for (std::size_t i = 0; i < std::min(effects.size(), set.members.size()); ++i) {
     const MemberFinding& member = set.members[i];
     const bool chosen = i == set.chosen, compared = !std::isnan(member.difference);
-    table.add_row({effects[i].label, edge(member.rms_heldout, kMicro), edge(member.systematic, kMicro),
-                   interval_in_um(member.systematic_low, member.systematic_high),
-                   chosen || !compared ? "-" : edge(member.difference, kMicro, 2),
-                   chosen || !compared ? "-" : edge(kCoverageFactor * member.difference_u, kMicro, 2),
-                   chosen      ? "extended.toml"
-                   : !compared ? "-"
-                               : alternative_model_file(place, i)});
+    std::vector<std::string> cells = {
+        effects[i].label,
+        edge(member.rms_heldout, kMicro),
+        edge(member.systematic, kMicro),
+        interval_in_um(member.systematic_low, member.systematic_high),
+        chosen || !compared ? "-" : edge(member.difference, kMicro, 2),
+        chosen || !compared ? "-" : edge(kCoverageFactor * member.difference_u, kMicro, 2)};
+    if (has_conditions) cells.push_back(conditions_words(member));
+    cells.push_back(chosen ? "extended.toml" : !compared ? "-" : alternative_model_file(place, i));
+    table.add_row(std::move(cells));
   }
   return table.text();
 }

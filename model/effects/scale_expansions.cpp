@@ -21,7 +21,8 @@ std::set<std::string> expansion_channels(const Machine& machine, const ModelSpec
   }
   for (const EffectSpec& effect : model.effects) {
     const EffectKind* kind = find_effect(effect.kind);
-    if (kind != nullptr) channels.merge(expansion_channels(*kind->make(effect, model.file)));
+    if (kind != nullptr && kind->schema().expands_scales)
+      channels.merge(expansion_channels(*kind->make(effect, model.file)));
   }
   return channels;
 }

@@ -6,72 +6,28 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/support/machines.h"
+#include "tests/support/expanding_scale.h"
 #include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/result/identified_expansions.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/solve/evaluate.h"
-#include "volcal/identify/solve/fit.h"
-#include "volcal/model/description/errors.h"
-#include "volcal/model/description/parameter_names.h"
 
 namespace volcal {
 namespace {
 
-constexpr double kSigmaOfPoints = 0.4e-6;  // m
-constexpr double kStated = 14e-6, kStatedSigma = 3e-6, kIdentified = 10e-6;
-constexpr int kPoints = 11;
-
-/// `per_kelvin` is the true coefficient; the machine file says 14 +- 3 um/m/K.
-Campaign points_at(double temperature_degC, double per_kelvin, double stated_sigma = kStatedSigma) {
-  Campaign campaign;
-  campaign.machine = testing_support::machine_of("w b X Y Z t");
-  campaign.machine.axes[0].expansion = ScaleExpansion{kStated, stated_sigma, "scale"};
-  campaign.machine.tools = {{"one", {0.0, 0.0, -0.2}, 0.0}};
-  Setup& setup = campaign.setups.emplace_back();
-  setup.name = "points";
-  setup.instrument = "volumetric-points";
-  setup.options.set("alignment", std::string("none"));
-  setup.noise.set("constant", kSigmaOfPoints);
-  setup.has_noise = true;
-  setup.readings.value.resize(3);
-  for (int row = 0; row < kPoints; ++row) {
-    const double x = row / (kPoints - 1.0);
-    for (const AxisName axis : kAllAxes)
-      setup.readings.position[index_of(axis)].push_back(axis == AxisName::X ? x : 0.0);
-    setup.readings.value[0].push_back(per_kelvin * (temperature_degC - 20.0) * x);
-    setup.readings.value[1].push_back(0.0);
-    setup.readings.value[2].push_back(0.0);
-    setup.readings.temperature["scale"].push_back(temperature_degC);
-    setup.readings.source_line.push_back(row + 2);
-  }
-  return campaign;
-}
-
-/// Without errors but for a straightness.
-ModelSpec model_of_points() {
-  ModelSpec model = nominal_model();
-  for (const char* symbol : {"EC0Y", "EB0Z", "EA0Z"})
-    model.locations_off.push_back(*LocationSymbol::parse(symbol));
-  FunctionSpec curve;
-  curve.basis = "legendre";
-  curve.degree = 3;
-  model.functions[*ErrorSymbol::parse("EYX")] = curve;
-  return model;
-}
+using testing_support::fitted;
+using testing_support::kIdentified;
+using testing_support::kPoints;
+using testing_support::kStated;
+using testing_support::kStatedSigma;
+using testing_support::model_of_points;
+using testing_support::points_at;
 
 ModelSpec knowing(double per_kelvin) {
   ModelSpec model = model_of_points();
   model.expansions[AxisName::X] = per_kelvin;
   return model;
-}
-
-FitResult fitted(const Campaign& campaign, const ModelSpec& model = model_of_points()) {
-  FitOptions options;
-  options.noise = NoisePolicy::White;
-  options.variance_components = false;
-  return fit(campaign, model, options);
 }
 
 double largest_along_x(const std::vector<ResidualRecord>& residuals) {

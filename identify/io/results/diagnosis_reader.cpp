@@ -166,7 +166,8 @@ SetFinding set_from(const Json& json) {
     member.difference = metres_of(each, "difference_um");
     member.difference_u = metres_of(each, "difference_u_um");
     for (const Json& at : each.at("at_mm")) member.at.push_back(at.get<double>() * kMetrePerMillimetre);
-    for (const auto& [column, value] : each.value("conditions", Json::object()).items()) {
+    const Json conditions = each.value("conditions", Json::object());
+    for (const auto& [column, value] : conditions.items()) {
       const auto variable = Variable::parse_column(column);
       if (!variable) throw std::invalid_argument("\"" + printable(column) + "\" is no condition");
       member.conditions.emplace_back(*variable, value.get<double>());

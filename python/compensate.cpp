@@ -13,7 +13,9 @@
 #include "volcal/identify/errors/acting_conditions.h"
 #include "volcal/identify/program/nc_check.h"
 #include "volcal/identify/program/program_header.h"
-#include "volcal/identify/program/tcp_rewriter.h"
+#include "volcal/identify/program/tcp/tcp_check.h"
+#include "volcal/identify/program/tcp/tcp_rewriter.h"
+#include "volcal/identify/program/tcp/tcp_words.h"
 #include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/program_text.h"
 #include "volcal/identify/text/json_text.h"
@@ -133,7 +135,6 @@ TcpRewriteOptions tcp_options(const FitResult& result, const Wishes& wishes) {
   options.decimals_mm = wishes.options.decimals_mm;
   options.decimals_deg = wishes.rotary_decimals;
   options.orientation = wishes.orientation;
-  options.check = true;
   options.within_readings = wishes.options.within_readings;
   options.header = wishes.options.header;
   return options;
@@ -144,18 +145,21 @@ CompensatedProgram tcp_compensated(const FitResult& result, const Conditions& co
                                    const Wishes& wishes, const std::string& program) {
   Tool tool;
   if (const auto index = result.machine.tool_index(wishes.tool)) tool = result.machine.tools[*index];
-  TcpRewriter rewriter(result.machine, joint_errors(result, tool, conditions), wishes.setup, wishes.point,
-                       tcp_options(result, wishes), wishes.name);
+  const JointErrorSource errors = joint_errors(result, tool, conditions);
+  TcpRewriter rewriter(result.machine, errors, wishes.setup, wishes.point, tcp_options(result, wishes),
+                       wishes.name);
+  TcpCheck check(result.machine, errors, wishes.setup, wishes.point);
   CompensatedProgram done;
-  const TcpRewriter::Sink sink = [&](std::string_view, std::span<const std::string> written) {
-    for (const std::string& text : written) done.text += text;
+  const TcpRewriter::Sink sink = [&](std::string_view line, std::span<const NcWrittenLine> written) {
+    for (const NcWrittenLine& text : written) done.text += text.text;
+    check.add(line, written);
   };
   for_lines(program, [&](std::string_view line) { rewriter.rewrite(line, sink); });
-  const TcpSummary summary = rewriter.summary();
-  done.summary = tcp_summary_json(summary, true);
-  done.lines = summary.lines_written;
-  done.rms_before = summary.before.rms;
-  done.rms_after = summary.after.rms;
+  done.summary =
+      tcp_summary_json(rewriter.summary(), TcpProgramCheck{check.before(), check.after(), check.length()});
+  done.lines = rewriter.summary().lines_written;
+  done.rms_before = check.before().rms;
+  done.rms_after = check.after().rms;
   return done;
 }
 

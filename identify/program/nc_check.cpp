@@ -87,6 +87,15 @@ void NcCheck::pass(const NcMotion& motion, const std::array<bool, 3>& known_befo
   turn_directions(moved, directions_);
 }
 
+/// From t_from on nothing is written.
+void NcCheck::stand(const NcMotion& original, const Eigen::Vector3d& at, double t_from) {
+  if (original.kind != NcMotionKind::Feed && original.kind != NcMotionKind::Arc) return;
+  NcMotion still;
+  still.kind = NcMotionKind::Feed;
+  still.from = still.to = at;
+  compare(original, still, t_from, 1.0);
+}
+
 void NcCheck::add(std::string_view line, std::span<const NcWrittenLine> written) {
   const std::array<bool, 3> known_before = original_.state().known;
   const NcStep& original = original_.execute(line);
@@ -94,6 +103,13 @@ void NcCheck::add(std::string_view line, std::span<const NcWrittenLine> written)
   if (!original.motions.empty()) use_functional_point();
   double reached = 0.0;
   std::size_t passed = 0;
+  const auto pass_until = [&](std::size_t end, const Eigen::Vector3d& stood) {
+    for (; passed < end; ++passed) {
+      const NcMotion& motion = original.motions.at(passed);
+      pass(motion, known_before);
+      stand(motion, stood, std::max(reached - static_cast<double>(passed), 0.0));
+    }
+  };
   for (const NcWrittenLine& text : written) {
     const NcStep& step = written_.execute(text.text);
     add_time(step, after_.errors);
@@ -101,12 +117,12 @@ void NcCheck::add(std::string_view line, std::span<const NcWrittenLine> written)
       if (motion.kind != NcMotionKind::Feed) continue;
       const double index = text.at > reached ? std::ceil(text.at) - 1.0 : std::floor(text.at);
       const auto i = static_cast<std::size_t>(index);
-      for (; passed < i; ++passed) pass(original.motions.at(passed), known_before);
+      pass_until(i, motion.from);
       compare(original.motions.at(i), motion, std::max(reached - index, 0.0), text.at - index);
     }
     reached = text.at;
   }
-  for (; passed < original.motions.size(); ++passed) pass(original.motions[passed], known_before);
+  pass_until(original.motions.size(), written_.state().position);
 }
 
 }  // namespace volcal

@@ -5,7 +5,8 @@
 /// The functional point of the original at place t of its path is p(t) + e(p(t)) instead of p(t); that of the
 /// rewriting q(t) + e(q(t)). Directions of approach are those of the programmed (original) motion for both: a
 /// correction moves an axis less than its lost motion. Figures are over feed motions, weighted by length, at
-/// irrational shares of every written line (sample_shares.h).
+/// irrational shares of every written line (sample_shares.h). Where the rewriting has no motion for a part of
+/// the path, it stands still there.
 
 #include <span>
 #include <string_view>
@@ -44,6 +45,7 @@ class NcCheck {
   void use_functional_point();
   void compare(const NcMotion& original, const NcMotion& written, double t_from, double t_to);
   void turn_at(const NcMotion& original, double t);
+  void stand(const NcMotion& original, const Eigen::Vector3d& at, double t_from);
   void pass(const NcMotion& motion, const std::array<bool, 3>& known_before);
 
   ProgramErrors errors_;

@@ -108,15 +108,16 @@ int* group_of(int code, NcCommands& commands) {
   }
 }
 
-void add_g(const NcWord& word, const NcPlace& place, NcCommands& commands) {
-  constexpr int kMachineAxes = 530, kNoCutterCompensation = 400, kSpindleSpeed = 970;
+void add_g(const NcWord& word, const NcPlace& place, NcAxes axes, NcCommands& commands) {
+  constexpr int kMachineAxes = 530, kNoCutterCompensation = 400, kSpindleSpeed = 970, kToolCentrePoint = 434;
   const int code = word.code();
   if (code == kMachineAxes) {
     commands.machine_axes = true;
     return;
   }
   if (code == kNoCutterCompensation || code == kSpindleSpeed) return;
-  int* const group = group_of(code, commands);
+  const bool turns = code == kToolCentrePoint && axes == NcAxes::WithRotary;
+  int* const group = turns ? &commands.tool_length : group_of(code, commands);
   if (group == nullptr) refuse_g(word, place);
   // G80 beside a motion ends a cycle and is otherwise silent.
   constexpr int kCancelCycle = 800;
@@ -147,9 +148,9 @@ void add_m(const NcWord& word, const NcPlace& place, NcCommands& commands) {
   commands.outputs = commands.outputs || (number >= 50 && number != 60);
 }
 
-void refuse_axis(char letter, const NcPlace& place) {
+void refuse_axis(char letter, const NcPlace& place, NcAxes axes) {
   const bool rotary = letter == 'A' || letter == 'B' || letter == 'C';
-  if (rotary)
+  if (rotary && axes == NcAxes::Linear)
     place.refuse(
         fmt::format("{} moves a rotary axis", letter),
         "only programs of X, Y and Z are compensated, and those with tool centre point motion (G43.4 H "
@@ -166,15 +167,15 @@ std::string g_code_name(int tenths) {
   return tenths % 10 == 0 ? fmt::format("G{}", tenths / 10) : fmt::format("G{}.{}", tenths / 10, tenths % 10);
 }
 
-NcCommands commands_of(const NcBlock& block, const NcPlace& place) {
+NcCommands commands_of(const NcBlock& block, const NcPlace& place, NcAxes axes) {
   NcCommands commands;
   for (const NcWord& word : block.words) {
     if (word.letter == 'G') {
-      add_g(word, place, commands);
+      add_g(word, place, axes, commands);
     } else if (word.letter == 'M') {
       add_m(word, place, commands);
     } else {
-      refuse_axis(word.letter, place);
+      refuse_axis(word.letter, place, axes);
       if (commands.has(word.letter))
         place.refuse(fmt::format("{} stands twice", word.letter), "write it once, or two blocks");
       commands.set(word.letter, word.value);

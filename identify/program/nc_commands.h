@@ -21,7 +21,7 @@ struct NcCommands {
   int distance = kNoCode;      ///< G90 G91
   int arc_distance = kNoCode;  ///< G90.1 G91.1
   int feed_mode = kNoCode;     ///< G93 G94 G95
-  int tool_length = kNoCode;   ///< G43 G43.1 G49
+  int tool_length = kNoCode;   ///< G43 G43.1 G43.4 G49
   int work_offset = kNoCode;   ///< G54 to G59.3
   int retract = kNoCode;       ///< G98 G99
   int path_control = kNoCode;  ///< G61 G61.1 G64
@@ -33,7 +33,8 @@ struct NcCommands {
   double value(char letter) const { return values_[static_cast<std::size_t>(letter - 'A')]; }
   /// 0 for what is not given.
   double value_or_zero(char letter) const { return has(letter) ? value(letter) : 0.0; }
-  bool has_axis_words() const { return has('X') || has('Y') || has('Z'); }
+  /// A, B and C among them in programs with rotary axes.
+  bool has_axis_words() const { return has('X') || has('Y') || has('Z') || has('A') || has('B') || has('C'); }
   /// Something beside motion and coordinates.
   bool has_settings() const { return settings_; }
 
@@ -52,8 +53,11 @@ struct NcCommands {
 inline constexpr std::array<char, 3> kNcAxisLetters = {'X', 'Y', 'Z'};
 inline constexpr std::array<char, 3> kNcCentreLetters = {'I', 'J', 'K'};
 
+/// What a program may move: with rotary axes it says A, B, C and G43.4.
+enum class NcAxes { Linear, WithRotary };
+
 /// Throws InputError for codes and words that are not tracked, given twice, or of one modal group.
-NcCommands commands_of(const NcBlock& block, const NcPlace& place);
+NcCommands commands_of(const NcBlock& block, const NcPlace& place, NcAxes axes = NcAxes::Linear);
 
 /// A G code in tenths as it is written: "G43.1".
 std::string g_code_name(int tenths);

@@ -32,7 +32,7 @@ bool sets_offset(const NcCommands& commands) {
 std::string letters_used(const NcStep& step, const NcState& state) {
   const NcCommands& commands = step.commands;
   std::string letters = "NFST";
-  if (step.motion != kNoCode || sets_offset(commands)) letters += "XYZ";
+  if (step.motion != kNoCode || sets_offset(commands)) letters += "XYZABC";
   if (is_arc(step.motion)) {
     letters += "RP";
     letters += kNcCentreLetters[static_cast<std::size_t>(state.plane.first)];
@@ -41,10 +41,58 @@ std::string letters_used(const NcStep& step, const NcState& state) {
   if (is_cycle(step.motion)) letters += "RPQL";
   if (commands.non_modal == 40) letters += "P";
   if (commands.non_modal == 100) letters += "LPR";
-  if (commands.tool_length == 430) letters += "H";
+  if (commands.tool_length == 430 || commands.tool_length == 434) letters += "H";
   if (commands.path_control == 640) letters += "PQ";
   if (commands.outputs) letters += "PQEL";
   return letters;
+}
+
+/// Nothing is changed.
+int wanted_motion(const NcCommands& commands, const NcPlace& place, const NcState& state) {
+  const bool axes = commands.has_axis_words();
+  const bool arc =
+      is_arc(commands.motion == kNoCode ? state.motion : commands.motion) && has_centre_words(commands);
+  if (sets_offset(commands) && (axes || arc)) {
+    if (arc || (commands.motion != kNoCode && commands.motion != kCancel))
+      place.refuse("a motion and an offset want the same coordinates", "write them in two blocks");
+    return kNoCode;
+  }
+  if (commands.motion == kCancel && axes)
+    place.refuse("coordinates in the block of G80", "write them in a block after it");
+  if (commands.non_modal == 40 && axes)
+    place.refuse("coordinates in the block of G4; controls differ in what they mean",
+                 "write them in two blocks");
+  if (axes || arc) return commands.motion == kNoCode ? state.motion : commands.motion;
+  if (is_arc(commands.motion) || is_cycle(commands.motion))
+    place.refuse(g_code_name(commands.motion) + " has no coordinates", "write where it goes");
+  return kNoCode;
+}
+
+}  // namespace
+
+bool is_deleted(const NcBlock& block, const NcSetup& setup, const NcPlace& place) {
+  if (!block.deletable) return false;
+  if (!setup.block_delete)
+    place.refuse("the block is skipped or run by the control's block-delete switch",
+                 "say how it stands: --block-delete on (skip) or off (run)");
+  return *setup.block_delete;
+}
+
+int follow_motion_code(const NcCommands& commands, const NcPlace& place, NcState& state) {
+  const int motion = wanted_motion(commands, place, state);
+  const bool moves = motion != kNoCode;
+  if (commands.has_axis_words() && !moves && !sets_offset(commands))
+    place.refuse("coordinates stand without G0, G1, G2, G3 or a cycle", "write the G code of the motion");
+  if (commands.motion != kNoCode) {
+    if (commands.motion != state.motion) {
+      state.cycle_depth = state.cycle_plane = state.cycle_peck = std::nullopt;
+      state.cycle_dwell = 0.0;
+    }
+    state.motion = commands.motion == kCancel ? kNoCode : commands.motion;
+  }
+  if (commands.machine_axes && !(moves && motion <= kFeed))
+    place.refuse("G53 stands without a motion by G0 or G1", "write G53 G0 and the coordinates");
+  return motion;
 }
 
 void refuse_unused_words(const NcStep& step, const NcState& state, const NcPlace& place) {
@@ -54,8 +102,6 @@ void refuse_unused_words(const NcStep& step, const NcState& state, const NcPlace
       place.refuse(fmt::format("{} belongs to no code of the block", word.letter), "take it out");
   }
 }
-
-}  // namespace
 
 double feed_time(const NcState& state, const NcPlace& place, double length) {
   if (state.feed <= 0.0)
@@ -78,11 +124,7 @@ bool NcInterpreter::skips() {
     begun_ = true;
     return true;
   }
-  if (!block.deletable || block.blank()) return block.blank();
-  if (!setup_.block_delete)
-    place().refuse("the block is skipped or run by the control's block-delete switch",
-                   "say how it stands: --block-delete on (skip) or off (run)");
-  return *setup_.block_delete;
+  return block.blank() || is_deleted(block, setup_, place());
 }
 
 const NcStep& NcInterpreter::execute(std::string_view line) {
@@ -111,52 +153,17 @@ const NcStep& NcInterpreter::execute(std::string_view line) {
   return step_;
 }
 
-/// The G code that the coordinates of the block belong to; kNoCode where nothing moves.
-int NcInterpreter::wanted_motion() const {
-  const NcCommands& commands = step_.commands;
-  const bool axes = commands.has_axis_words();
-  const bool arc =
-      is_arc(commands.motion == kNoCode ? state_.motion : commands.motion) && has_centre_words(commands);
-  if (sets_offset(commands) && (axes || arc)) {
-    if (arc || (commands.motion != kNoCode && commands.motion != kCancel))
-      place().refuse("a motion and an offset want the same coordinates", "write them in two blocks");
-    return kNoCode;
-  }
-  if (commands.motion == kCancel && axes)
-    place().refuse("coordinates in the block of G80", "write them in a block after it");
-  if (commands.non_modal == 40 && axes)
-    place().refuse("coordinates in the block of G4; controls differ in what they mean",
-                   "write them in two blocks");
-  if (axes || arc) return commands.motion == kNoCode ? state_.motion : commands.motion;
-  if (is_arc(commands.motion) || is_cycle(commands.motion))
-    place().refuse(g_code_name(commands.motion) + " has no coordinates", "write where it goes");
-  return kNoCode;
-}
-
 void NcInterpreter::move() {
-  const NcCommands& commands = step_.commands;
-  step_.motion = wanted_motion();
-  const bool moves = step_.motion != kNoCode;
-  if (commands.has_axis_words() && !moves && !sets_offset(commands))
-    place().refuse("coordinates stand without G0, G1, G2, G3 or a cycle", "write the G code of the motion");
-  if (commands.motion != kNoCode) {
-    if (commands.motion != state_.motion) {
-      state_.cycle_depth = state_.cycle_plane = state_.cycle_peck = std::nullopt;
-      state_.cycle_dwell = 0.0;
-    }
-    state_.motion = commands.motion == kCancel ? kNoCode : commands.motion;
-  }
-  step_.machine_axes = moves && commands.machine_axes;
-  if (commands.machine_axes && !(moves && step_.motion <= kFeed))
-    place().refuse("G53 stands without a motion by G0 or G1", "write G53 G0 and the coordinates");
-  if (!moves) return;
+  step_.motion = follow_motion_code(step_.commands, place(), state_);
+  if (step_.motion == kNoCode) return;
+  step_.machine_axes = step_.commands.machine_axes;
   if (step_.motion <= kFeed) {
     rapid_or_feed(step_.motion);
   } else if (is_arc(step_.motion)) {
     arc_motion(step_.motion == kClockwise);
   } else {
     require_known("cycle");
-    append_cycle(step_.motion, commands, place(), state_, step_.motions);
+    append_cycle(step_.motion, step_.commands, place(), state_, step_.motions);
   }
 }
 

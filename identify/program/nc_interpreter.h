@@ -38,7 +38,6 @@ class NcInterpreter {
  private:
   bool skips();
   void move();
-  int wanted_motion() const;
   Eigen::Vector3d target();
   void rapid_or_feed(int motion);
   void arc_motion(bool clockwise);
@@ -54,6 +53,17 @@ class NcInterpreter {
   NcState state_;
   NcStep step_;
 };
+
+/// Whether the control's switch skips a block that begins with `/`. Throws InputError where it is not known
+/// how the switch stands.
+bool is_deleted(const NcBlock& block, const NcSetup& setup, const NcPlace& place);
+
+/// The G code of group 1 that the coordinates of a block belong to, kNoCode where nothing moves; the state
+/// keeps it for the blocks that follow. Throws InputError for coordinates that belong to none, or to two.
+int follow_motion_code(const NcCommands& commands, const NcPlace& place, NcState& state);
+
+/// Throws InputError for words that belong to no code of the block.
+void refuse_unused_words(const NcStep& step, const NcState& state, const NcPlace& place);
 
 /// Time of a feed motion of this length by the state's F, s; NaN where feed per turn has no spindle speed.
 /// Throws InputError when no feed is in force.

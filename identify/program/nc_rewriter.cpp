@@ -18,11 +18,6 @@ namespace {
 constexpr double kShareOfJumps = 0.25;    ///< of the tolerance
 constexpr double kTravelRounding = 1e-9;  // m
 
-std::size_t length_without_end(std::string_view line) {
-  const std::size_t last = line.find_last_not_of("\r\n");
-  return last == std::string_view::npos ? 0 : last + 1;
-}
-
 void check_tolerance_of_path(const char* option, double tolerance) {
   if (std::isfinite(tolerance) && tolerance > 0.0) return;
   throw InputError({}, fmt::format("{} {:g} is out of range", option, tolerance / kMetrePerMicrometre),
@@ -207,17 +202,6 @@ void NcRewriter::write_header(std::string_view line) {
   written_.insert(percent ? written_.begin() + 1 : written_.begin(), header.begin(), header.end());
 }
 
-/// What was added must not make a line longer than controls read; lines that were so before are the user's.
-void NcRewriter::require_readable(std::string_view line) const {
-  for (const NcWrittenLine& written : written_) {
-    const std::size_t length = length_without_end(written.text);
-    if (length <= kLongestLine || length <= length_without_end(line)) continue;
-    interpreter_.place().refuse(
-        fmt::format("the rewritten block has {} characters, and controls read {}", length, kLongestLine),
-        "write its comment on a line of its own");
-  }
-}
-
 void NcRewriter::rewrite(std::string_view line, const Sink& sink) {
   written_.clear();
   const std::array<bool, 3> known_before = interpreter_.state().known;
@@ -238,7 +222,7 @@ void NcRewriter::rewrite(std::string_view line, const Sink& sink) {
     place.refuse(error.what(), "look at the result's error tables");
   }
   if (written_.size() > 1) ++summary_.split_lines;
-  require_readable(line);
+  for (const NcWrittenLine& written : written_) require_readable(written.text, line, place);
   write_header(line);
   ++summary_.lines_read;
   summary_.lines_written += static_cast<std::int64_t>(written_.size());

@@ -67,7 +67,6 @@ class NcRewriter {
   void use_functional_point();
   void note_place(const NcMotion& motion);
   void write_header(std::string_view line);
-  void require_readable(std::string_view line) const;
   void correct_motions(const NcStep& step, const std::array<bool, 3>& known_before);
   void correct_rapid(const NcMotion& motion, double at, const std::array<bool, 3>& known_before);
   void correct_line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double at, double t_from,

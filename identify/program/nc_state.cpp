@@ -38,18 +38,6 @@ void apply_units(const NcCommands& commands, const NcPlace& place, NcState& stat
   state.unit = unit;
 }
 
-Eigen::Vector3d given_length(const NcCommands& commands, const NcSetup& setup, const NcPlace& place) {
-  if (!commands.has('H'))
-    place.refuse("G43 stands without H; controls differ in which tool's length they then take",
-                 "write G43 H and the number of the tool");
-  const double number = commands.value('H');
-  const auto found = setup.tool_lengths.find(static_cast<int>(number));
-  if (number != std::floor(number) || found == setup.tool_lengths.end())
-    place.refuse(fmt::format("the length of tool H{:g} is not given", number),
-                 fmt::format("add --tool-length H{:g}=LENGTH in mm", number));
-  return {0.0, 0.0, found->second};
-}
-
 void apply_tool_length(const NcCommands& commands, const NcSetup& setup, const NcPlace& place,
                        NcState& state) {
   if (commands.tool_length == kNoCode) return;
@@ -57,7 +45,7 @@ void apply_tool_length(const NcCommands& commands, const NcSetup& setup, const N
   if (commands.tool_length == 490) {
     state.length.setZero();
   } else if (commands.tool_length == 430) {
-    state.length = given_length(commands, setup, place);
+    state.length = {0.0, 0.0, given_tool_length(commands, setup, place)};
   } else {
     for (int i = 0; i < 3; ++i) {
       const char letter = kNcAxisLetters[static_cast<std::size_t>(i)];
@@ -187,6 +175,19 @@ Eigen::Vector3d program_origin(const NcState& state, const NcPlace& place) {
         fmt::format("the program moves in {}, whose offset is not given", work_offset_name(state.work)),
         fmt::format("add --work-offset {}=X...,Y...,Z... in mm", work_offset_name(state.work)));
   return *work + state.local + state.length;
+}
+
+double given_tool_length(const NcCommands& commands, const NcSetup& setup, const NcPlace& place) {
+  const std::string code = g_code_name(commands.tool_length);
+  if (!commands.has('H'))
+    place.refuse(code + " stands without H; controls differ in which tool's length they then take",
+                 "write " + code + " H and the number of the tool");
+  const double number = commands.value('H');
+  const auto found = setup.tool_lengths.find(static_cast<int>(number));
+  if (number != std::floor(number) || found == setup.tool_lengths.end())
+    place.refuse(fmt::format("the length of tool H{:g} is not given", number),
+                 fmt::format("add --tool-length H{:g}=LENGTH in mm", number));
+  return found->second;
 }
 
 double require_unit(const NcState& state, const NcPlace& place) {

@@ -71,6 +71,9 @@ Eigen::Vector3d program_origin(const NcState& state, const NcPlace& place);
 /// what cannot be followed.
 void apply_settings(const NcCommands& commands, const NcSetup& setup, const NcPlace& place, NcState& state);
 
+/// Of the block's H, m. Throws InputError where it has none or its length is not given.
+double given_tool_length(const NcCommands& commands, const NcSetup& setup, const NcPlace& place);
+
 /// Unit of length, m. Throws InputError while it is not known.
 double require_unit(const NcState& state, const NcPlace& place);
 

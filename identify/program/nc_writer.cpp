@@ -1,11 +1,14 @@
 #include "volcal/identify/program/nc_writer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 
 #include "volcal/identify/program/nc_cycles.h"
+#include "volcal/identify/program/program_header.h"
 
 namespace volcal {
 namespace {
@@ -75,7 +78,20 @@ void drop_blanks(std::string& out) {
   while (!out.empty() && (out.back() == ' ' || out.back() == '\t')) out.pop_back();
 }
 
+std::size_t length_without_end(std::string_view line) {
+  const std::size_t last = line.find_last_not_of("\r\n");
+  return last == std::string_view::npos ? 0 : last + 1;
+}
+
 }  // namespace
+
+void require_readable(std::string_view written, std::string_view original, const NcPlace& place) {
+  const std::size_t length = length_without_end(written);
+  if (length <= kLongestLine || length <= length_without_end(original)) return;
+  place.refuse(
+      fmt::format("the rewritten block has {} characters, and controls read {}", length, kLongestLine),
+      "write its comment on a line of its own");
+}
 
 NcWriter::NcWriter(const NcSetup& setup, int decimals_mm)
     : state_(initial_state(setup)), decimals_mm_(decimals_mm) {}

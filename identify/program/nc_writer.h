@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "volcal/identify/program/nc_interpreter.h"
@@ -22,6 +23,10 @@ struct NcWrittenLine {
   std::string text;
   double at = 0.0;
 };
+
+/// What was added must not make a line longer than controls read; one that was so before is the user's.
+/// Throws InputError.
+void require_readable(std::string_view written, std::string_view original, const NcPlace& place);
 
 /// Keeps what the control that runs the written program holds: its positions, and with them its offsets.
 class NcWriter {

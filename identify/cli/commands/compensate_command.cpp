@@ -16,7 +16,9 @@
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/program/nc_check.h"
 #include "volcal/identify/program/program_header.h"
-#include "volcal/identify/program/tcp_rewriter.h"
+#include "volcal/identify/program/tcp/tcp_check.h"
+#include "volcal/identify/program/tcp/tcp_rewriter.h"
+#include "volcal/identify/program/tcp/tcp_words.h"
 #include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/program_text.h"
@@ -130,45 +132,56 @@ TcpRewriteOptions tcp_options(const FitResult& result, const CompensateArguments
   options.decimals_mm = arguments.decimals;
   options.decimals_deg = arguments.rotary_decimals;
   options.orientation = arguments.orientation;
-  options.check = arguments.check;
   options.within_readings = arguments.conditions.no_extrapolation;
   options.header = header(result, arguments, conditions,
                           begin == TcpBegin::ByName ? CommentStyle::Semicolon : CommentStyle::Brackets);
   return options;
 }
 
-TcpSummary rewrite_tcp(const FitResult& result, const CompensateArguments& arguments,
-                       const Conditions& conditions, TcpBegin begin) {
+/// What happened to a program with tool centre point motion.
+struct RewrittenTcp {
+  TcpSummary summary;
+  std::optional<TcpProgramCheck> check;
+};
+
+RewrittenTcp rewrite_tcp(const FitResult& result, const CompensateArguments& arguments,
+                         const Conditions& conditions, TcpBegin begin) {
   Tool tool;
   if (const auto index = result.machine.tool_index(arguments.tool)) tool = result.machine.tools[*index];
-  TcpRewriter rewriter(result.machine, joint_errors(result, tool, conditions),
-                       program_setup(arguments.setup, result.machine),
-                       functional_point(result.machine, arguments.tool, arguments.lengths_from),
+  const JointErrorSource errors = joint_errors(result, tool, conditions);
+  const NcSetup setup = program_setup(arguments.setup, result.machine);
+  const FunctionalPoint point = functional_point(result.machine, arguments.tool, arguments.lengths_from);
+  TcpRewriter rewriter(result.machine, errors, setup, point,
                        tcp_options(result, arguments, conditions, begin), arguments.program);
+  std::optional<TcpCheck> check;
+  if (arguments.check) check.emplace(result.machine, errors, setup, point);
   LineFile program(arguments.program);
   std::optional<AtomicFile> output;
   if (!arguments.output.empty()) output.emplace(arguments.output);
-  const TcpRewriter::Sink sink = [&](std::string_view, std::span<const std::string> written) {
-    for (const std::string& text : written) {
-      if (output) output->write(text);
+  const TcpRewriter::Sink sink = [&](std::string_view line, std::span<const NcWrittenLine> written) {
+    if (output) {
+      for (const NcWrittenLine& text : written) output->write(text.text);
     }
+    if (check) check->add(line, written);
   };
   for (std::string_view line; program.next(line);) rewriter.rewrite(line, sink);
   if (output) output->commit();
-  return rewriter.summary();
+  RewrittenTcp done{rewriter.summary(), std::nullopt};
+  if (check) done.check = TcpProgramCheck{check->before(), check->after(), check->length()};
+  return done;
 }
 
 int run_tcp(const FitResult& result, const CompensateArguments& arguments, const Conditions& conditions,
             TcpBegin begin) {
-  const TcpSummary summary = rewrite_tcp(result, arguments, conditions, begin);
+  const RewrittenTcp done = rewrite_tcp(result, arguments, conditions, begin);
   const ProgramFindings findings = program_findings(result, arguments.tool, true);
   if (arguments.json) {
-    nlohmann::ordered_json json = tcp_summary_json(summary, arguments.check);
+    nlohmann::ordered_json json = tcp_summary_json(done.summary, done.check);
     add_program_findings(findings, result, conditions, json);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));
   } else {
-    fmt::print("{}{}{}", tcp_summary_text(summary, arguments.check), conditions_text(result, conditions),
+    fmt::print("{}{}{}", tcp_summary_text(done.summary, done.check), conditions_text(result, conditions),
                findings_text(findings.all()));
     if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
   }

@@ -121,7 +121,7 @@ std::vector<std::string> letters_of(const std::set<AxisName>& axes) {
 
 }  // namespace
 
-std::string tcp_summary_text(const TcpSummary& summary, bool checked) {
+std::string tcp_summary_text(const TcpSummary& summary, const std::optional<TcpProgramCheck>& check) {
   std::string text = fmt::format(
       "{} lines in, {} out: {} motions with tool centre point motion; {} lines were split; largest "
       "correction "
@@ -146,17 +146,18 @@ std::string tcp_summary_text(const TcpSummary& summary, bool checked) {
         "! {0} goes beyond its travel: it carries the workpiece and is taken to turn without end, unless "
         "endless = false stands in [axes.{0}] of the machine file\n",
         letter_of(axis));
-  if (!checked) return text;
+  if (!check) return text;
   TextTable table(
       {{"", Align::Left}, {"RMS [um]"}, {"max [um]"}, {"in line"}, {"axis RMS [urad]"}, {"max [urad]"}},
       fmt::format("Error of the tool point, and of the tool's axis, along {:.1f} mm of feed motion",
-                  summary.length / kMetrePerMillimetre));
-  add_tcp_errors("as programmed", summary.before, table);
-  add_tcp_errors("rewritten", summary.after, table);
+                  check->length / kMetrePerMillimetre));
+  add_tcp_errors("as programmed", check->before, table);
+  add_tcp_errors("rewritten", check->after, table);
   return text + table.text();
 }
 
-nlohmann::ordered_json tcp_summary_json(const TcpSummary& summary, bool checked) {
+nlohmann::ordered_json tcp_summary_json(const TcpSummary& summary,
+                                        const std::optional<TcpProgramCheck>& check) {
   nlohmann::ordered_json json = {{"lines_read", summary.lines_read},
                                  {"lines_written", summary.lines_written},
                                  {"motions", summary.motions},
@@ -167,10 +168,10 @@ nlohmann::ordered_json tcp_summary_json(const TcpSummary& summary, bool checked)
                                  {"positions_near_poles", summary.near_poles},
                                  {"positions_beyond_readings", summary.beyond_readings},
                                  {"assumed_endless", letters_of(summary.assumed_endless)}};
-  if (checked) {
-    json["check"] = {{"feed_length_mm", summary.length / kMetrePerMillimetre},
-                     {"before", tcp_errors_json(summary.before)},
-                     {"after", tcp_errors_json(summary.after)}};
+  if (check) {
+    json["check"] = {{"feed_length_mm", check->length / kMetrePerMillimetre},
+                     {"before", tcp_errors_json(check->before)},
+                     {"after", tcp_errors_json(check->after)}};
   }
   return json;
 }

@@ -8,7 +8,8 @@
 
 #include "volcal/identify/errors/conditions.h"
 #include "volcal/identify/program/nc_check.h"
-#include "volcal/identify/program/tcp_rewriter.h"
+#include "volcal/identify/program/tcp/tcp_check.h"
+#include "volcal/identify/program/tcp/tcp_rewriter.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/model/description/finding.h"
 
@@ -26,9 +27,16 @@ std::string program_check_text(const ProgramCheck& check);
 nlohmann::ordered_json program_json(const NcRewriteSummary& summary,
                                     const std::optional<ProgramCheck>& check);
 
-/// Of programs with tool centre point motion; `checked`: its figures of errors were filled.
-std::string tcp_summary_text(const TcpSummary& summary, bool checked);
-nlohmann::ordered_json tcp_summary_json(const TcpSummary& summary, bool checked);
+/// Errors along a program with tool centre point motion before and after.
+struct TcpProgramCheck {
+  TcpErrors before;
+  TcpErrors after;
+  double length = 0.0;  ///< of the path of the functional point in feed motions, m
+};
+
+std::string tcp_summary_text(const TcpSummary& summary, const std::optional<TcpProgramCheck>& check);
+nlohmann::ordered_json tcp_summary_json(const TcpSummary& summary,
+                                        const std::optional<TcpProgramCheck>& check);
 
 /// What is to be said of the errors that a program is rewritten by.
 struct ProgramFindings {

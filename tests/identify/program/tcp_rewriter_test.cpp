@@ -1,7 +1,7 @@
 // Programs with tool centre point motion, rewritten and run on exact machines of sim, by a reading of the
 // text and a control of the test's own.
 
-#include "volcal/identify/program/tcp_rewriter.h"
+#include "volcal/identify/program/tcp/tcp_rewriter.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "tests/support/identified_machines.h"
-#include "tests/support/nc_programs.h"
 #include "tests/support/refusal.h"
 #include "tests/support/rotary_machines.h"
-#include "volcal/identify/errors/conditions.h"
+#include "tests/support/tcp_programs.h"
+#include "volcal/identify/program/tcp/tcp_words.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/sim/machine/truth_machine.h"
 
@@ -29,34 +29,13 @@ namespace {
 
 using Eigen::Vector3d;
 using ::testing::AllOf;
+using testing::five_axis_result;
 using ::testing::HasSubstr;
+using testing::kTcpTool;
+using testing::kWork;
 using ::testing::Not;
-
-/// All errors of rotary axes, and of linear ones too. What travels a turn goes round without end: of a head,
-/// too, corrections may then pass the half turn at which its travel ends.
-FitResult five_axis_result(const std::string& structure) {
-  Machine machine = testing::rotary_machine(structure);
-  for (Axis& axis : machine.axes) {
-    if (axis.travels_a_turn()) axis.endless = true;
-  }
-  testing::GivenErrors given;
-  double phase = 0.1;
-  for (const Axis& axis : machine.axes) {
-    for (const Component component : kAllComponents) {
-      phase += 0.6;
-      const ErrorSymbol symbol{component, axis.name};
-      const double size = is_rotation(component) ? 12e-6 : 4e-6;
-      const double wave = is_rotary(axis.name) ? 1.0 : 5.0;
-      const double zero = symbol.is_positioning() ? size * std::sin(phase) : 0.0;
-      given.functions[symbol.name()] = [=](double q) { return size * std::sin(wave * q + phase) - zero; };
-      const bool along = !is_rotation(component) && direction_of(component) == direction_of(axis.name);
-      if (is_rotary(axis.name) && !along)
-        given.locations[LocationSymbol{component, axis.name}.name()] =
-            (is_rotation(component) ? 40e-6 : 15e-6) * std::cos(2.0 * phase);
-    }
-  }
-  return testing::result_with(machine, given, 72);
-}
+using testing::tcp_rewritten;
+using testing::TcpDone;
 
 /// What a block of the text says: words that hold until they change; millimetres and degrees.
 struct SaidPose {
@@ -85,10 +64,6 @@ std::vector<SaidPose> said_poses(const std::string& text) {
   }
   return poses;
 }
-
-constexpr double kToolInHolder = 0.18;    // m
-const Vector3d kWork{0.02, -0.03, 0.02};  // m, G54
-const Vector3d kTcpTool{0.0, 0.0, -kToolInHolder};
 
 Vector3d said_point(const SaidPose& pose) {
   return kWork + 1e-3 * Vector3d(pose.words.at('X'), pose.words.at('Y'), pose.words.at('Z'));
@@ -164,32 +139,6 @@ RunErrors run_on(const sim::TruthMachine& machine, const std::string& original, 
   return errors;
 }
 
-NcSetup tcp_setup() {
-  NcSetup setup;
-  setup.work_offsets[0] = kWork;
-  setup.tool_lengths[1] = kToolInHolder;
-  return setup;
-}
-
-struct TcpDone {
-  std::string text;
-  TcpSummary summary;
-};
-
-TcpDone tcp_rewritten(const std::string& program, const FitResult& result, TcpRewriteOptions options = {}) {
-  TcpRewriter rewriter(result.machine,
-                       joint_errors(result, result.machine.tools.front(), default_conditions(result)),
-                       tcp_setup(), {kTcpTool, Vector3d::Zero()}, std::move(options), "part.ngc");
-  TcpDone done;
-  for (const std::string& line : testing::program_lines(program)) {
-    rewriter.rewrite(line, [&](std::string_view, std::span<const std::string> written) {
-      for (const std::string& text : written) done.text += text;
-    });
-  }
-  done.summary = rewriter.summary();
-  return done;
-}
-
 /// A swept surface: tilts and turns with the path, through the pole in the last block.
 std::string tcp_program(const std::string& tilt) {
   return "%\nG21 G90 G54 (five axes)\nG0 " + tilt + "-10 C0\nG43.4 H1\nG0 X40 Y10 Z30 " + tilt +
@@ -206,7 +155,6 @@ class TcpPrograms : public ::testing::TestWithParam<const char*> {
 TEST_P(TcpPrograms, PutTheToolWhereTheProgramMeansIt) {
   const sim::TruthMachine machine = testing::true_machine(result_);
   TcpRewriteOptions options;
-  options.check = true;
   options.decimals_mm = 5;
   const TcpDone done = tcp_rewritten(program_, result_, options);
   const RunErrors before = run_on(machine, program_, program_), after = run_on(machine, program_, done.text);
@@ -214,9 +162,9 @@ TEST_P(TcpPrograms, PutTheToolWhereTheProgramMeansIt) {
   EXPECT_LT(after.max, 0.6e-6) << done.text;
   EXPECT_LT(after.rms, 0.3e-6);
   // what is printed: distances to poses, not to the nearest place of the path
-  EXPECT_GE(done.summary.before.rms * 1.05, before.rms);
-  EXPECT_LT(done.summary.after.max, 0.7e-6);
-  EXPECT_GT(done.summary.after.rms, 0.0);
+  EXPECT_GE(done.before.rms * 1.05, before.rms);
+  EXPECT_LT(done.after.max, 0.7e-6);
+  EXPECT_GT(done.after.rms, 0.0);
   EXPECT_GT(done.summary.split_lines, 3);
   EXPECT_EQ(done.summary.copied_rapids, 1);
   EXPECT_THAT(done.text, HasSubstr("%\nG21 G90 G54 (five axes)\n"));
@@ -227,19 +175,18 @@ TEST_P(TcpPrograms, TurnTheToolsAxisBackWithOrientation) {
   const sim::TruthMachine machine = testing::true_machine(result_);
   TcpRewriteOptions options;
   options.orientation = true;
-  options.check = true;
   options.decimals_mm = 5;
   const TcpDone done = tcp_rewritten(program_, result_, options);
   const RunErrors before = run_on(machine, program_, program_), after = run_on(machine, program_, done.text);
   EXPECT_LT(after.max, 0.7e-6);
   EXPECT_LT(after.axis_rms, 0.4 * before.axis_rms);
-  EXPECT_NEAR(done.summary.after.axis_rms, after.axis_rms, 0.2 * after.axis_rms + 0.5e-6);
+  EXPECT_NEAR(done.after.axis_rms, after.axis_rms, 0.2 * after.axis_rms + 0.5e-6);
   // the last block goes through the pole: bounded, and said
   EXPECT_GT(done.summary.near_poles, 0);
   EXPECT_EQ(done.summary.first_near_pole, 10);
-  EXPECT_LT(done.summary.largest_turn, 60.0 * done.summary.before.axis_max);
-  EXPECT_GT(done.summary.largest_turn, done.summary.before.axis_max);
-  EXPECT_LE(done.summary.after.axis_max, 1.05 * done.summary.before.axis_max);
+  EXPECT_LT(done.summary.largest_turn, 60.0 * done.before.axis_max);
+  EXPECT_GT(done.summary.largest_turn, done.before.axis_max);
+  EXPECT_LE(done.after.axis_max, 1.05 * done.before.axis_max);
 }
 
 INSTANTIATE_TEST_SUITE_P(Structures, TcpPrograms,
@@ -285,7 +232,7 @@ TEST(TcpRewriter, RefusesWhatItCannotFollow) {
               HasSubstr("G2 is not followed in tool centre point"));
   EXPECT_THAT(refused(begin + "G91\n"), HasSubstr("G91 is not followed"));
   EXPECT_THAT(refused(begin + "G53 G0 Z0\n"), HasSubstr("G53 is not followed in"));
-  EXPECT_THAT(refused(begin + "G1 X10 B5\n"), HasSubstr("the machine has no axis B"));
+  EXPECT_THAT(refused(begin + "G1 X10 B5 F100\n"), HasSubstr("the machine has no axis B"));
   EXPECT_THAT(refused(begin + "G1 X400 F100\n"), HasSubstr("outside its travel"));
   EXPECT_THAT(refused(begin + "G1 A111 F100\n"), HasSubstr("takes A to"));
   EXPECT_THAT(refused(begin + "G1 X10 Y10 A-30 C90 F100 M0\n"), HasSubstr("in a block of its own"));

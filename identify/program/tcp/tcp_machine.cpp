@@ -1,9 +1,14 @@
-#include "volcal/identify/program/tcp_machine.h"
+#include "volcal/identify/program/tcp/tcp_machine.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
+
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -12,6 +17,11 @@ constexpr double kTcpTurn = 2.0 * std::numbers::pi;
 constexpr double kReached = 1e-9;  // m
 constexpr double kSolved = 1e-10;  // m
 constexpr int kTcpSteps = 12;
+constexpr double kBetweenPlaces = 1e-3;  // m
+constexpr double kTurnBetweenPlaces = 0.25 * kRadianPerDegree;
+constexpr double kMostPlaces = 1e4;   // of a motion
+constexpr double kSlightlyOn = 1e-4;  // of a motion: where the directions of its axes are looked at
+constexpr double kTcpStill = 1e-12;   // m or rad
 
 FiveAxisSettings tcp_settings(const Eigen::Vector3d& tool_offset, bool orientation) {
   FiveAxisSettings settings;
@@ -43,6 +53,12 @@ JointErrorSource within_a_turn(const Machine& machine, JointErrorSource errors) 
 TcpPose TcpPose::between(const TcpPose& from, const TcpPose& to, double t) {
   if (t >= 1.0) return to;
   return {from.point_w + t * (to.point_w - from.point_w), from.rotary + t * (to.rotary - from.rotary)};
+}
+
+double tcp_places(const TcpPose& from, const TcpPose& to) {
+  const double way = (to.point_w - from.point_w).norm() / kBetweenPlaces +
+                     (to.rotary - from.rotary).norm() / kTurnBetweenPlaces;
+  return std::clamp(way, 1.0, kMostPlaces);
 }
 
 TcpMachine::TcpMachine(const Machine& machine, const Eigen::Vector3d& tool_offset, JointErrorSource errors,
@@ -109,6 +125,28 @@ TcpMachine::Left TcpMachine::left(const TcpPose& sent, const TcpPose& meant,
   const Eigen::Vector3d wanted =
       chain_.nominal_rotation_wt(with_linear(Eigen::Vector3d::Zero(), meant.rotary)).col(2);
   return {(there.point_w - meant.point_w).norm(), std::atan2(axis.cross(wanted).norm(), axis.dot(wanted))};
+}
+
+ApproachDirection TcpMachine::directions(const TcpPose& from, const TcpPose& to, double t,
+                                         const ApproachDirection& held) const {
+  const double begin = std::clamp(t - 0.5 * kSlightlyOn, 0.0, 1.0 - kSlightlyOn);
+  const AxisPosition before = axes_at(TcpPose::between(from, to, begin));
+  const AxisPosition after = axes_at(TcpPose::between(from, to, begin + kSlightlyOn));
+  ApproachDirection directions = held;
+  for (std::size_t i = 0; i < kAxisCount; ++i) {
+    const double moved = after[i] - before[i];
+    if (std::abs(moved) > kTcpStill) directions[i] = moved > 0.0 ? 1 : -1;
+  }
+  return directions;
+}
+
+TcpMachines::TcpMachines(const Machine& machine, JointErrorSource errors, bool orientation)
+    : machine_(machine), errors_(std::move(errors)), orientation_(orientation) {}
+
+const TcpMachine& TcpMachines::with(const Eigen::Vector3d& tool_offset) {
+  const std::string key =
+      fmt::format("{:.9f} {:.9f} {:.9f}", tool_offset.x(), tool_offset.y(), tool_offset.z());
+  return machines_.try_emplace(key, machine_, tool_offset, errors_, orientation_).first->second;
 }
 
 }  // namespace volcal

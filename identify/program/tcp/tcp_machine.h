@@ -7,6 +7,8 @@
 /// turn count modulo it.
 
 #include <Eigen/Core>
+#include <map>
+#include <string>
 
 #include "volcal/identify/compensation/five_axis_compensation.h"
 
@@ -20,6 +22,12 @@ struct TcpPose {
   /// t = 0..1; the control moves all of them in proportion.
   static TcpPose between(const TcpPose& from, const TcpPose& to, double t);
 };
+
+/// At which turns count as displacements, m.
+inline constexpr double kTcpLever = 0.1;
+
+/// Places of a motion at which it is looked at: about a millimetre or a quarter of a degree apart.
+double tcp_places(const TcpPose& from, const TcpPose& to);
 
 class TcpMachine {
  public:
@@ -36,6 +44,10 @@ class TcpMachine {
   /// axes take back their own rotation, and with `orientation` what FOR adds, which is bounded at a pole
   /// (five_axis_compensation.h).
   TcpPose command(const TcpPose& pose, const ApproachDirection& direction) const;
+  /// In which the axes move at place t of a motion, by the nominal way of each; one that stands keeps its
+  /// direction of `held`.
+  ApproachDirection directions(const TcpPose& from, const TcpPose& to, double t,
+                               const ApproachDirection& held) const;
   /// Of the machine that is sent to `sent`, against what is `meant`.
   struct Left {
     double point = 0.0;  ///< m
@@ -54,6 +66,21 @@ class TcpMachine {
   Eigen::Vector3d tool_;
   JointErrorSource errors_;
   FiveAxisCompensation compensation_;
+};
+
+/// One for every tool that a program uses.
+class TcpMachines {
+ public:
+  /// As TcpMachine.
+  TcpMachines(const Machine& machine, JointErrorSource errors, bool orientation);
+  /// Stays valid.
+  const TcpMachine& with(const Eigen::Vector3d& tool_offset);
+
+ private:
+  Machine machine_;
+  JointErrorSource errors_;
+  bool orientation_;
+  std::map<std::string, TcpMachine> machines_;  ///< by tool offset
 };
 
 }  // namespace volcal

@@ -1,14 +1,10 @@
-#include "volcal/identify/program/tcp_words.h"
+#include "volcal/identify/program/tcp/tcp_words.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cctype>
+#include <string>
 
 namespace volcal {
 namespace {
-
-constexpr int kTcpOn = 434, kTcpOff = 490;
 
 /// Without blanks, comments and a block number, in upper case.
 std::string bare(std::string_view line) {
@@ -42,37 +38,14 @@ std::optional<TcpBegin> tcp_begin(std::string_view line) {
   return longer ? std::nullopt : std::optional(TcpBegin::ByCode);
 }
 
-bool TcpWords::has_g(int code) const { return std::ranges::find(g, code) != g.end(); }
-
-bool TcpWords::moves() const {
-  return std::ranges::any_of(kTcpLetters, [this](char letter) { return has(letter); });
-}
-
-TcpWords::TcpWords(std::string_view line, const NcPlace& place, NcBlock& block) {
+TcpName tcp_name(std::string_view line, const NcPlace& place) {
   const std::string text = bare(line);
-  by_name = is_traori(text) || is_trafoof(text);
-  on = is_traori(text);
-  off = is_trafoof(text);
-  if (by_name) {
-    block = NcBlock{};
-    block.text = line;
-    return;
-  }
+  if (is_traori(text)) return TcpName::On;
+  if (is_trafoof(text)) return TcpName::Off;
   if (text.starts_with("TRA"))
     place.refuse("the transformation " + text.substr(0, 40) + " is not followed",
                  "TRAORI and TRAFOOF are, each in a block of its own");
-  parse_block(line, place, block);
-  for (const NcWord& word : block.words) add(word, place);
-  on = has_g(kTcpOn);
-  off = has_g(kTcpOff);
-}
-
-void TcpWords::add(const NcWord& word, const NcPlace& place) {
-  if (word.letter == 'G') return g.push_back(word.code());
-  if (word.letter == 'M') return m.push_back(word.code());
-  auto& of_letter = value[static_cast<std::size_t>(word.letter - 'A')];
-  if (of_letter) place.refuse(fmt::format("{} stands twice", word.letter), "write it once, or two blocks");
-  of_letter = word.value;
+  return TcpName::None;
 }
 
 }  // namespace volcal

@@ -52,6 +52,8 @@ CommandCorrection command_correction(const ActiveCompensation& compensation) {
   for (const ControlModel& model : compensation.tables.models) computed.push_back(model_correction(model));
   for (const ControlTwistGrid& grid : compensation.tables.twist_grids)
     computed.push_back(twist_correction(grid));
+  for (const ControlPivotChange& change : compensation.tables.pivots)
+    computed.push_back(pivot_correction(change));
   const auto tables = std::make_shared<const ControlTables>(compensation.tables);
   return [computed, tables, step = compensation.least_increment](const MachineState& state) {
     CommandMoves sum;

@@ -86,6 +86,23 @@ struct ControlModel {
   RotaryModel rotary = RotaryModel::None;
 };
 
+/// LinuxCNC's kinematics of a table C on a tilting A or B, xyzac-trt-kins and xyzbc-trt-kins (trtfuncs.c):
+/// the pins of the module, m. The offset counts across the tilting axis: along y of A, along x of B, and
+/// along z.
+struct ControlPivots {
+  AxisName tilt = AxisName::A;
+  Eigen::Vector3d rot_point = Eigen::Vector3d::Zero();
+  double across_offset = 0.0, z_offset = 0.0;
+};
+
+/// A control that runs programs under other pivots than those that the machine was drawn with, for work that
+/// was touched off again on a table that stands displaced.
+struct ControlPivotChange {
+  ControlPivots drawn, loaded;
+  Eigen::Vector3d work_moved = Eigen::Vector3d::Zero();
+  double tool_length = 0.0;  ///< m
+};
+
 /// Tables of one folder; their corrections add up.
 struct ControlTables {
   std::vector<ControlAxisTable> axis_tables;
@@ -94,10 +111,11 @@ struct ControlTables {
   std::vector<ControlSkew> skews;
   std::vector<ControlTwistGrid> twist_grids;
   std::vector<ControlModel> models;
+  std::vector<ControlPivotChange> pivots;
 
   bool empty() const {
     return axis_tables.empty() && products.empty() && grids.empty() && skews.empty() && twist_grids.empty() &&
-           models.empty();
+           models.empty() && pivots.empty();
   }
 };
 

@@ -16,5 +16,6 @@ double table_value(const ControlAxisTable& table, const MachineState& state);
 
 CommandCorrection model_correction(const ControlModel& model);
 CommandCorrection twist_correction(const ControlTwistGrid& grid);
+CommandCorrection pivot_correction(const ControlPivotChange& change);
 
 }  // namespace volcal::sim

@@ -15,6 +15,7 @@
 #include "volcal/model/description/unknowns.h"
 #include "volcal/studies/files/control_words.h"
 #include "volcal/studies/files/rotary_control_tables.h"
+#include "volcal/studies/files/skew_control_tables.h"
 #include "volcal/studies/files/typed_control_tables.h"
 
 namespace volcal {
@@ -186,30 +187,11 @@ sim::ControlTables linuxcnc_grid_control(std::span<const TableFile> files) {
   return tables;
 }
 
-sim::ControlTables klipper_control(std::span<const TableFile> files) {
-  sim::ControlSkew skew;
-  for (const Words& line : lines_of_words(content_of(files, "skew_correction.cfg"), " \t=:")) {
-    if (line[0] == "xy_skew") skew.xy = std::stod(line.at(1));
-    if (line[0] == "xz_skew") skew.xz = std::stod(line.at(1));
-    if (line[0] == "yz_skew") skew.yz = std::stod(line.at(1));
-  }
+// Screw compensation of the joints, and the pins of the kinematics.
+sim::ControlTables linuxcnc_trt_control(std::span<const TableFile> files) {
   sim::ControlTables tables;
-  tables.skews.push_back(skew);
-  return tables;
-}
-
-sim::ControlTables marlin_control(std::span<const TableFile> files) {
-  sim::ControlSkew skew;
-  for (const Words& line : lines_of_words(content_of(files, "skew.gcode"), " \t")) {
-    if (line[0] != "M852") continue;
-    for (const std::string& word : line) {
-      if (word[0] == 'I' || word[0] == 'S') skew.xy = std::stod(word.substr(1));
-      if (word[0] == 'J') skew.xz = std::stod(word.substr(1));
-      if (word[0] == 'K') skew.yz = std::stod(word.substr(1));
-    }
-  }
-  sim::ControlTables tables;
-  tables.skews.push_back(skew);
+  if (find_file(files, "compensation.ini") != nullptr) tables = linuxcnc_control(files);
+  if (const TableFile* file = find_file(files, "pivots.hal")) add_trt_pivots(*file, tables);
   return tables;
 }
 
@@ -314,13 +296,13 @@ sim::ControlTables etalon_control(std::span<const TableFile> files) {
   return tables;
 }
 
-/// Assignments of a SINUMERIK file as words: variable, indices, value. Comments are left out.
 sim::ControlTables isg_ssfk_control(std::span<const TableFile> files) {
   sim::ControlTables tables;
   add_leadscrew_lists(files, tables);
   return tables;
 }
 
+/// Assignments of a SINUMERIK file as words: variable, indices, value. Comments are left out.
 std::vector<Words> sinumerik_words(const std::string& text) {
   std::vector<Words> assignments;
   for (Words line : lines_of_words(text, " \t[],=()\"")) {
@@ -412,29 +394,37 @@ struct ControlFormat {
   std::string_view format;
   std::vector<std::string> marks;  ///< any of these files in a folder
   sim::ControlTables (*read)(std::span<const TableFile>);
-  std::string_view without;  ///< a file that makes them part of another format
+  std::string_view without = {};         ///< a file that makes `shared` part of another format
+  std::vector<std::string> shared = {};  ///< marks where `without` is not there
 };
 
 const std::vector<ControlFormat>& control_formats() {
   static const std::vector<ControlFormat> formats = {
-      {"csv", {"compensation_tables.csv"}, csv_control, ""},
+      {"csv", {"compensation_tables.csv"}, csv_control},
       {"neutral-csv",
-       {"axis_corrections.csv", "correction_grid.csv", "rotary_axis_corrections.csv",
-        "rotary_compensation_grid_table.csv", "rotary_compensation_grid_tool.csv"},
+       {"axis_corrections.csv", "correction_grid.csv", "rotary_axis_corrections.csv"},
        neutral_control,
-       "compensation_tables.csv"},
-      {"linuxcnc", {"compensation.ini"}, linuxcnc_control, ""},
-      {"linuxcnc-grid", {"volcal.grid"}, linuxcnc_grid_control, ""},
-      {"klipper", {"skew_correction.cfg"}, klipper_control, ""},
-      {"marlin", {"skew.gcode"}, marlin_control, ""},
-      {"isg-csv", {"volcomp.lis"}, isg_control, ""},
-      {"etalon-exchange", {"volcomp.txt"}, etalon_control, ""},
-      {"isg-ssfk", {"achskw1.lis", "achskw2.lis", "achskw3.lis"}, isg_ssfk_control, "volcomp.lis"},
-      {"sinumerik", {"AX_EEC.INI"}, sinumerik_control, ""},
-      {"sinumerik-cec", {"NC_CEC.INI"}, sinumerik_cec_control, ""},
-      {"heidenhain", {"CONFIG.CMA.txt"}, heidenhain_control, ""},
-      {"fanuc", {"pitch_error.txt"}, fanuc_control, ""}};
+       "compensation_tables.csv",
+       {"rotary_compensation_grid_table.csv", "rotary_compensation_grid_tool.csv"}},
+      {"linuxcnc", {}, linuxcnc_control, "pivots.hal", {"compensation.ini"}},
+      {"linuxcnc-grid", {"volcal.grid", "volcal.rotary"}, linuxcnc_grid_control},
+      {"linuxcnc-trt", {"pivots.hal"}, linuxcnc_trt_control},
+      {"klipper", {"skew_correction.cfg"}, klipper_control},
+      {"marlin", {"skew.gcode"}, marlin_control},
+      {"isg-csv", {"volcomp.lis"}, isg_control},
+      {"etalon-exchange", {"volcomp.txt"}, etalon_control},
+      {"isg-ssfk", {}, isg_ssfk_control, "volcomp.lis", {"achskw1.lis", "achskw2.lis", "achskw3.lis"}},
+      {"sinumerik", {"AX_EEC.INI"}, sinumerik_control},
+      {"sinumerik-cec", {"NC_CEC.INI"}, sinumerik_cec_control},
+      {"heidenhain", {"CONFIG.CMA.txt"}, heidenhain_control},
+      {"fanuc", {"pitch_error.txt"}, fanuc_control}};
   return formats;
+}
+
+bool is_marked(const ControlFormat& format, const std::set<std::string>& names) {
+  const auto is_there = [&](const std::string& name) { return names.contains(name); };
+  if (std::ranges::any_of(format.marks, is_there)) return true;
+  return !names.contains(std::string(format.without)) && std::ranges::any_of(format.shared, is_there);
 }
 
 }  // namespace
@@ -453,9 +443,7 @@ TablesFolder read_tables_folder(const std::string& folder) {
     if (entry.is_regular_file() && name.front() != '.' && !certificate) names.insert(name);
   }
   for (const ControlFormat& format : control_formats()) {
-    if (names.contains(std::string(format.without)) ||
-        std::ranges::none_of(format.marks, [&](const std::string& mark) { return names.contains(mark); }))
-      continue;
+    if (!is_marked(format, names)) continue;
     if (tables.format != nullptr)
       throw InputError({folder, 0},
                        "the folder holds tables of two formats, " + std::string(tables.format->name) +

@@ -182,6 +182,36 @@ void add_kins_rotary_tables(const TableFile& file, sim::ControlTables& tables) {
   }
 }
 
+void add_trt_pivots(const TableFile& file, sim::ControlTables& tables) {
+  constexpr double kPivotInch = 25.4e-3;
+  double unit = kRotaryMillimetre;
+  sim::ControlPivotChange change;
+  const auto in = [&](const Words& line, std::size_t i) { return std::stod(line.at(i)) * unit; };
+  for (const Words& line : lines_of_words(file.content, " \t")) {
+    if (line[0] == "#" && line.size() == 4 && line[2] == "units") {
+      change.drawn.tilt = line[1] == "xyzbc-trt-kins" ? AxisName::B : AxisName::A;
+      unit = line[3] == "inch" ? kPivotInch : kRotaryMillimetre;
+    } else if (line[0] == "#" && line.at(1) == "nominal") {
+      change.drawn.rot_point = {in(line, 2), in(line, 3), in(line, 4)};
+      change.drawn.across_offset = in(line, 5);
+      change.drawn.z_offset = in(line, 6);
+    } else if (line[0] == "#" && line.size() == 6 && line[1] == "table") {
+      change.work_moved = {in(line, 3), in(line, 4), in(line, 5)};
+    } else if (line[0] == "#" && line.size() == 4 && line[1] == "tool") {
+      change.tool_length = in(line, 3);
+    } else if (line[0] == "setp") {
+      const std::string pin = line.at(1).substr(line[1].find('.') + 1);
+      if (pin == "x-rot-point") change.loaded.rot_point.x() = in(line, 2);
+      if (pin == "y-rot-point") change.loaded.rot_point.y() = in(line, 2);
+      if (pin == "z-rot-point") change.loaded.rot_point.z() = in(line, 2);
+      if (pin == "x-offset" || pin == "y-offset") change.loaded.across_offset = in(line, 2);
+      if (pin == "z-offset") change.loaded.z_offset = in(line, 2);
+    }
+  }
+  change.loaded.tilt = change.drawn.tilt;
+  tables.pivots.push_back(change);
+}
+
 IsgChainControl::IsgChainControl(const std::string& list, const std::string& file) {
   std::string chain;
   std::size_t on_workpiece_side = 0;

@@ -19,6 +19,9 @@ void add_neutral_rotary_tables(std::span<const TableFile> files, sim::ControlTab
 /// volcal.rotary of linuxcnc-grid, as volcalkins.c takes it.
 void add_kins_rotary_tables(const TableFile& file, sim::ControlTables& tables);
 
+/// pivots.hal of linuxcnc-trt, as trtfuncs.c takes its pins; what they replace stands in its comments.
+void add_trt_pivots(const TableFile& file, sim::ControlTables& tables);
+
 /// Volumetric compensation of the ISG kernel with a chain of axes (P-VOLC-00007, P-VOLC-00008): it computes
 /// the position of the tool with centres, location errors and error motions, and corrects it by linear axes.
 class IsgChainControl {

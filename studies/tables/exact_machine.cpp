@@ -18,7 +18,9 @@ sim::MachineState state_at(const JudgedMachine& judged, const VolumePoint& point
 }  // namespace
 
 bool is_wanted(const TableFormat& format, const std::vector<std::string>& names) {
-  return control_reads(format) && (names.empty() || std::ranges::find(names, format.name) != names.end());
+  if (!control_reads(format)) return false;
+  const bool as_linuxcnc = format.name == "linuxcnc-trt";  // tables of linear axes are those of linuxcnc
+  return names.empty() ? !as_linuxcnc : std::ranges::find(names, format.name) != names.end();
 }
 
 TableFormatOptions study_table_options(const TableFormat& format, CompensationType type,

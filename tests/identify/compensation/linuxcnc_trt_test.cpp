@@ -6,18 +6,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <random>
 
 #include "tests/support/identified_machines.h"
 #include "tests/support/refusal.h"
 #include "tests/support/rotary_machines.h"
+#include "tests/support/scratch_folder.h"
 #include "volcal/identify/compensation/checks/made_tables.h"
 #include "volcal/identify/compensation/checks/volume_check.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/sim/machine/control.h"
 #include "volcal/sim/machine/truth_machine.h"
+#include "volcal/studies/files/control_tables.h"
 
 namespace volcal {
 namespace {
@@ -118,6 +122,66 @@ TEST(LinuxCncTrt, LeavesNothingOfDisplacedLines) {
     EXPECT_GT(before, 15e-6) << structure;
     EXPECT_LT(after, 2e-9) << structure;
   }
+}
+
+/// The simulated control by the sines and cosines of trtfuncs.c, the format's reader by rotations: the same
+/// at every pose, with tables of the joints and without, in millimetres and inches.
+TEST(LinuxCncTrt, TheSimulatedControlReadsThem) {
+  const TableFormat& format = *find_table_format("linuxcnc-trt");
+  for (const char* structure : {kTrtTrunnion, "w C' B' b X Y Z t"}) {
+    for (const char* units : {"mm", "inch"}) {
+      const FitResult result = displaced_lines(structure);
+      TableFormatOptions options = pivots_alone();
+      options.settings["units"] = units;
+      const std::vector<TableFile> files = trt_files(result, options);
+      const CompensationTables own = format.read(files);
+      const auto control = sim::command_correction({control_tables(format, files), 0.0, {}});
+      double largest = 0.0;
+      for (const AxisPosition& pose : poses_of_all_axes(result.machine, 60)) {
+        sim::MachineState state;
+        state.position = pose;
+        const sim::CommandMoves moves = control(state);
+        EXPECT_LT((moves.linear - own.correction(pose, {}).linear).norm(), 1e-12) << structure;
+        EXPECT_EQ(moves.rotary.norm(), 0.0);
+        largest = std::max(largest, moves.linear.norm());
+      }
+      EXPECT_GT(largest, 15e-6) << structure;
+    }
+  }
+}
+
+/// With the screws' tables and alone a folder with pivots is one of linuxcnc-trt, and both parts act.
+TEST(LinuxCncTrt, AFolderWithPivotsIsItsOwn) {
+  testing::GivenErrors given;
+  given.functions["EXX"] = [](double q) { return 1e-4 * q; };
+  given.locations = {{"EX0C", 5e-6}};
+  const FitResult result = testing::result_with(testing::rotary_machine(kTrtTrunnion), given, 2);
+  TableFormatOptions options = pivots_alone();
+  options.type = CompensationType(CompensationPart::Positioning) | CompensationPart::RotaryLocation;
+  options.step = 0.1;
+  AxisPosition pose{};
+  pose[0] = 0.2;
+  for (const bool alone : {false, true}) {
+    const testing::ScratchFolder scratch;
+    for (const TableFile& file : trt_files(result, alone ? pivots_alone() : options))
+      std::ofstream(scratch.path() / file.name) << file.content;
+    const TablesFolder folder = read_tables_folder(scratch.path().string());
+    EXPECT_EQ(folder.format->name, "linuxcnc-trt");
+    sim::MachineState state;
+    state.position = pose;
+    const Eigen::Vector3d moved =
+        sim::command_correction({control_tables(*folder.format, folder.files), 0.0, {}})(state).linear;
+    // the table stands 5 um further along X, and the screw 20 um too far
+    EXPECT_NEAR(moved.x(), alone ? 5e-6 : -15e-6, 1e-8);
+  }
+}
+
+/// What acts on rotary axes cannot be superimposed, which is said of pivots too.
+TEST(LinuxCncTrt, PivotsAreNotSuperimposed) {
+  const FitResult result = displaced_lines(kTrtTrunnion);
+  TableFormatOptions options = pivots_alone();
+  options.active = find_table_format("linuxcnc-trt")->read(trt_files(result));
+  EXPECT_THAT(testing::refusal([&] { trt_files(result, options); }), HasSubstr("cannot be superimposed"));
 }
 
 /// Linear axes that err by 4 um along Y everywhere, where their tables are zero at home: the pivots hold it,

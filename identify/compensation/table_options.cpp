@@ -119,7 +119,9 @@ void check_active_tables(const TableFormat& format, const FitResult& result,
     throw InputError({},
                      "the active tables correct up to " + std::to_string(lost * 1e6) + " um that " +
                          options.type.name() + " does not hold",
-                     "give --type with all that is active, L-VOL holds everything");
+                     format.supported.contains(CompensationType::volumetric())
+                         ? "give --type with all that is active, L-VOL holds everything"
+                         : "give --type with all that is active, or a format that holds L-VOL");
 }
 
 /// Positions and steps that are possible at all.

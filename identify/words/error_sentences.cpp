@@ -132,8 +132,9 @@ std::string error_at_home_turns(const Finding& finding) {
 std::string tables_off_ideal(const Finding& finding) {
   return fmt::format(
       "between their positions the tables are up to {:.2f} um off the ideal compensation: --tolerance takes "
-      "as many positions as that needs, --step or --positions as many as they say",
-      finding.number("off").in_unit());
+      "as many positions as that needs, {}",
+      finding.number("off").in_unit(),
+      finding.flag("positions") ? "--step or --positions as many as they say" : "--step as many as it says");
 }
 
 std::string rotary_tables_off_ideal(const Finding& finding) {
@@ -159,10 +160,15 @@ std::string rotary_tables_without_directions(const Finding& finding) {
 }
 
 std::string tables_leave_more(const Finding& finding) {
+  std::string finer;
+  if (finding.flag("step")) finer = "a finer --step";
+  if (finding.flag("positions")) finer += " or more --positions";
+  if (finding.flag("rotary_step")) finer = "a finer --rotary-step";
   return fmt::format(
-      "the machine errs by {:.2f} um RMS with these tables and by {:.2f} without: do not load them; take a "
-      "finer --step, --positions or --rotary-step, a format that holds more positions, or fewer types",
-      finding.number("with").in_unit(), finding.number("without").in_unit());
+      "the machine errs by {:.2f} um RMS with these tables and by {:.2f} without: do not load them; take {}",
+      finding.number("with").in_unit(), finding.number("without").in_unit(),
+      finer.empty() ? "fewer types, or another format"
+                    : finer + ", a format that holds more positions, or fewer types");
 }
 
 std::string compensations_differ(const Finding& finding) {

@@ -81,7 +81,8 @@ void report_step(const FitResult& result, MadeTables& made) {
   if (made.tolerance > 0.0 || !limits.sampled || made.options.type.linear().empty()) return;
   const double off = deviation_of(*made.format, result, made.options, made.read_back);
   if (off > kCoarseStep * kDefaultTableTolerance + 0.5 * limits.resolution)
-    made.cautions.push_back({FindingCode::TablesOffIdeal, {{"off", in_micrometres(off)}}});
+    made.cautions.push_back({FindingCode::TablesOffIdeal,
+                             {{"off", in_micrometres(off)}, {"positions", made.format->positions_of_own}}});
 }
 
 void report_rotary_step(double tolerance, MadeTables& made) {
@@ -97,15 +98,32 @@ void report_rotary_directions(MadeTables& made) {
                            {{"rms", in_micrometres(made.rotary_check->without_directions)}}});
 }
 
+enum class FinerBy { Nothing, Step, StepOrPositions, RotaryStep };
+
+FinerBy finer_linear_tables(const MadeTables& made) {
+  if (!made.format->limits.sampled) return FinerBy::Nothing;
+  return made.format->positions_of_own ? FinerBy::StepOrPositions : FinerBy::Step;
+}
+
+FinerBy finer_rotary_tables(const MadeTables& made) {
+  const bool constants = made.options.type.rotary() == CompensationPart::RotaryLocation;
+  return constants ? FinerBy::Nothing : FinerBy::RotaryStep;
+}
+
 /// Positions that are further apart than the errors change can add to them.
 void report_more_than_none(MadeTables& made) {
-  const auto report = [&made](double without, double with) {
+  const auto report = [&made](double without, double with, FinerBy finer) {
     if (with <= without + kNotableIncrease) return;
     made.cautions.push_back({FindingCode::TablesLeaveMore,
-                             {{"without", in_micrometres(without)}, {"with", in_micrometres(with)}}});
+                             {{"without", in_micrometres(without)},
+                              {"with", in_micrometres(with)},
+                              {"step", finer == FinerBy::Step || finer == FinerBy::StepOrPositions},
+                              {"positions", finer == FinerBy::StepOrPositions},
+                              {"rotary_step", finer == FinerBy::RotaryStep}}});
   };
-  report(made.check.before.rms, made.check.exported.rms);
-  if (made.rotary_check) report(made.rotary_check->before.rms, made.rotary_check->exported.rms);
+  report(made.check.before.rms, made.check.exported.rms, finer_linear_tables(made));
+  if (made.rotary_check)
+    report(made.rotary_check->before.rms, made.rotary_check->exported.rms, finer_rotary_tables(made));
 }
 
 /// 0 = the default.

@@ -118,6 +118,9 @@ std::vector<WordedFinding> examples_of_errors() {
        "format that holds that"},
       {{FindingCode::TablesOffIdeal, {{"off", FindingNumber{4.2e-6, "um", 1e-6}}}},
        "between their positions the tables are up to 4.20 um off the ideal compensation: --tolerance takes "
+       "as many positions as that needs, --step as many as it says"},
+      {{FindingCode::TablesOffIdeal, {{"off", FindingNumber{4.2e-6, "um", 1e-6}}, {"positions", true}}},
+       "between their positions the tables are up to 4.20 um off the ideal compensation: --tolerance takes "
        "as many positions as that needs, --step or --positions as many as they say"},
       {{FindingCode::RotaryTablesWithoutDirections, {{"rms", FindingNumber{3.54e-6, "um", 1e-6}}}},
        "tables of rotary axes are the mean of both directions of approach: reversals of these axes leave "
@@ -132,9 +135,28 @@ std::vector<WordedFinding> examples_of_errors() {
        "the constants of rotary axes are up to 12.30 um off what R-POR could correct: they say where the "
        "axes are, not how they are tilted, which grids of rotary axes hold"},
       {{FindingCode::TablesLeaveMore,
-        {{"with", FindingNumber{4.26e-6, "um", 1e-6}}, {"without", FindingNumber{3.53e-6, "um", 1e-6}}}},
+        {{"with", FindingNumber{4.26e-6, "um", 1e-6}},
+         {"without", FindingNumber{3.53e-6, "um", 1e-6}},
+         {"step", true}}},
        "the machine errs by 4.26 um RMS with these tables and by 3.53 without: do not load them; take a "
-       "finer --step, --positions or --rotary-step, a format that holds more positions, or fewer types"},
+       "finer --step, a format that holds more positions, or fewer types"},
+      {{FindingCode::TablesLeaveMore,
+        {{"with", FindingNumber{4.26e-6, "um", 1e-6}},
+         {"without", FindingNumber{3.53e-6, "um", 1e-6}},
+         {"step", true},
+         {"positions", true}}},
+       "the machine errs by 4.26 um RMS with these tables and by 3.53 without: do not load them; take a "
+       "finer --step or more --positions, a format that holds more positions, or fewer types"},
+      {{FindingCode::TablesLeaveMore,
+        {{"with", FindingNumber{4.26e-6, "um", 1e-6}},
+         {"without", FindingNumber{3.53e-6, "um", 1e-6}},
+         {"rotary_step", true}}},
+       "the machine errs by 4.26 um RMS with these tables and by 3.53 without: do not load them; take a "
+       "finer --rotary-step, a format that holds more positions, or fewer types"},
+      {{FindingCode::TablesLeaveMore,
+        {{"with", FindingNumber{4.26e-6, "um", 1e-6}}, {"without", FindingNumber{3.53e-6, "um", 1e-6}}}},
+       "the machine errs by 4.26 um RMS with these tables and by 3.53 without: do not load them; take fewer "
+       "types, or another format"},
       {{FindingCode::CompensationsDiffer, {{"measured", "L-VOL"}}},
        "these readings were taken with L-VOL active, which the errors do not know: the figures are of both "
        "together; validate --tables takes out what tables corrected"},

@@ -87,13 +87,13 @@ void NcCheck::pass(const NcMotion& motion, const std::array<bool, 3>& known_befo
   turn_directions(moved, directions_);
 }
 
-/// From t_from on nothing is written.
-void NcCheck::stand(const NcMotion& original, const Eigen::Vector3d& at, double t_from) {
+/// Nothing is written for the original from t_from to t_to.
+void NcCheck::stand(const NcMotion& original, const Eigen::Vector3d& at, double t_from, double t_to) {
   if (original.kind != NcMotionKind::Feed && original.kind != NcMotionKind::Arc) return;
   NcMotion still;
   still.kind = NcMotionKind::Feed;
   still.from = still.to = at;
-  compare(original, still, t_from, 1.0);
+  compare(original, still, t_from, t_to);
 }
 
 void NcCheck::add(std::string_view line, std::span<const NcWrittenLine> written) {
@@ -107,18 +107,27 @@ void NcCheck::add(std::string_view line, std::span<const NcWrittenLine> written)
     for (; passed < end; ++passed) {
       const NcMotion& motion = original.motions.at(passed);
       pass(motion, known_before);
-      stand(motion, stood, std::max(reached - static_cast<double>(passed), 0.0));
+      stand(motion, stood, std::max(reached - static_cast<double>(passed), 0.0), 1.0);
     }
   };
   for (const NcWrittenLine& text : written) {
     const NcStep& step = written_.execute(text.text);
     add_time(step, after_.errors);
+    bool feeds = false;
     for (const NcMotion& motion : step.motions) {
       if (motion.kind != NcMotionKind::Feed) continue;
+      feeds = true;
       const double index = text.at > reached ? std::ceil(text.at) - 1.0 : std::floor(text.at);
       const auto i = static_cast<std::size_t>(index);
       pass_until(i, motion.from);
       compare(original.motions.at(i), motion, std::max(reached - index, 0.0), text.at - index);
+    }
+    if (!feeds && text.at > reached) {
+      const double index = std::ceil(text.at) - 1.0;
+      const auto i = static_cast<std::size_t>(index);
+      pass_until(i, written_.state().position);
+      stand(original.motions.at(i), written_.state().position, std::max(reached - index, 0.0),
+            text.at - index);
     }
     reached = text.at;
   }

@@ -45,7 +45,7 @@ class NcCheck {
   void use_functional_point();
   void compare(const NcMotion& original, const NcMotion& written, double t_from, double t_to);
   void turn_at(const NcMotion& original, double t);
-  void stand(const NcMotion& original, const Eigen::Vector3d& at, double t_from);
+  void stand(const NcMotion& original, const Eigen::Vector3d& at, double t_from, double t_to);
   void pass(const NcMotion& motion, const std::array<bool, 3>& known_before);
 
   ProgramErrors errors_;

@@ -38,59 +38,49 @@ RotaryLeft figures_of(const LeftAtPoses& errors) {
   return left;
 }
 
-FiveAxisCompensation ideal_of_rotary_axes(const FitResult& result, const TableFormatOptions& options) {
+FiveAxisCompensation ideal_of_rotary_axes(const FitResult& result, const TableFormatOptions& options,
+                                          bool turns_axes = true) {
   const Tool& tool = tool_of(result.machine, options);
   FiveAxisSettings settings;
   settings.type = options.type.rotary();
   settings.tool_offset = tool.offset;
+  settings.turns_axes = turns_axes;
   return {result.machine, settings, rotary_errors_to_correct(result, options)};
+}
+
+using LinearTables = std::optional<CompensationTables>;
+
+/// Of the types of linear axes alone, read back; none where there is no such type.
+LinearTables tables_of_linear_axes(const TableFormat& format, const FitResult& result,
+                                   TableFormatOptions options) {
+  options.type = options.type.linear();
+  if (options.type.empty()) return std::nullopt;
+  return format.read(write_tables(format, result, options));
 }
 
 /// The machine with the errors of its rotary axes alone, and what tables add to its commands for them.
 class RotaryJudgement {
  public:
-  RotaryJudgement(const TableFormat& format, const FitResult& result, const TableFormatOptions& options,
-                  const CompensationTables& tables)
-      : ideal_(ideal_of_rotary_axes(result, options)),
-        of_linear_(sampled_compensation(format, result, options)),
-        has_linear_(!options.type.linear().empty()),
-        tables_(tables) {}
+  RotaryJudgement(const FitResult& result, const TableFormatOptions& options,
+                  const CompensationTables& tables, const LinearTables& of_linear)
+      : ideal_(ideal_of_rotary_axes(result, options)), of_linear_(of_linear), tables_(tables) {}
 
   const FiveAxisCompensation& ideal() const { return ideal_; }
   Correction by_tables(const ApproachedPose& at) const {
     Correction correction = tables_.correction(at.position, at.direction);
-    if (has_linear_)
-      correction.linear -= of_linear_.correction(without_rotary_axes(at.position), at.direction);
+    if (of_linear_)
+      correction.linear -= of_linear_->correction(without_rotary_axes(at.position), at.direction).linear;
     return correction;
   }
   Correction by_ideal(const ApproachedPose& at) const { return ideal_.correction(at.position, at.direction); }
 
  private:
   FiveAxisCompensation ideal_;
-  Compensation of_linear_;
-  bool has_linear_;
+  const LinearTables& of_linear_;
   const CompensationTables& tables_;
 };
 
-}  // namespace
-
-DisplacementField linear_part(const FitResult& result, const TableFormatOptions& options,
-                              const CompensationTables& tables) {
-  if (options.type.rotary().empty())
-    return [&tables](const AxisPosition& position, const ApproachDirection& direction) {
-      return tables.correction(position, direction).linear;
-    };
-  return [&tables, ideal = ideal_of_rotary_axes(result, options)](const AxisPosition& position,
-                                                                  const ApproachDirection& direction) {
-    return Eigen::Vector3d(tables.correction(position, direction).linear - ideal.correction(position).linear);
-  };
-}
-
-std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const FitResult& result,
-                                             const TableFormatOptions& options,
-                                             const CompensationTables& tables) {
-  if (options.type.rotary().empty()) return std::nullopt;
-  const RotaryJudgement judgement(format, result, options, tables);
+RotaryCheck checked(const FitResult& result, const RotaryJudgement& judgement) {
   const FiveAxisCompensation& ideal = judgement.ideal();
   const auto none = [](const ApproachedPose&) { return Correction{}; };
   const auto by_ideal = [&](const ApproachedPose& at) { return judgement.by_ideal(at); };
@@ -111,11 +101,38 @@ std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const Fi
   return check;
 }
 
+}  // namespace
+
+DisplacementField linear_part(const FitResult& result, const TableFormatOptions& options,
+                              const CompensationTables& tables) {
+  if (options.type.rotary().empty())
+    return [&tables](const AxisPosition& position, const ApproachDirection& direction) {
+      return tables.correction(position, direction).linear;
+    };
+  return [&tables, turning = ideal_of_rotary_axes(result, options),
+          moving = ideal_of_rotary_axes(result, options, false)](const AxisPosition& position,
+                                                                 const ApproachDirection& direction) {
+    const Correction correction = tables.correction(position, direction);
+    // A control that turns no axis undoes with X, Y and Z what R-POS corrects.
+    const FiveAxisCompensation& ideal = correction.rotary.isZero(0.0) ? moving : turning;
+    return Eigen::Vector3d(correction.linear - ideal.correction(position).linear);
+  };
+}
+
+std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const FitResult& result,
+                                             const TableFormatOptions& options,
+                                             const CompensationTables& tables) {
+  if (options.type.rotary().empty()) return std::nullopt;
+  const LinearTables of_linear = tables_of_linear_axes(format, result, options);
+  return checked(result, {result, options, tables, of_linear});
+}
+
 double choose_rotary_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
                           double tolerance) {
   constexpr std::array<double, 5> kSteps = {0.0, 5.0, 2.0, 1.0, 0.5};  // deg
   constexpr double kAsGood = 0.95;
   if (options.type.rotary().empty()) return options.rotary_step;
+  const LinearTables of_linear = tables_of_linear_axes(format, result, options);
   double best = options.rotary_step, least = std::numeric_limits<double>::infinity();
   for (const double step : kSteps) {
     options.rotary_step = step * kRadianPerDegree;
@@ -123,7 +140,7 @@ double choose_rotary_step(const TableFormat& format, const FitResult& result, Ta
       const std::vector<TableFile> files = write_tables(format, result, options);
       if (bytes_of(files) > kMostTableBytes) break;
       const CompensationTables tables = format.read(files);
-      const double deviation = check_rotary_axes(format, result, options, tables)->deviation;
+      const double deviation = checked(result, {result, options, tables, of_linear}).deviation;
       if (deviation < kAsGood * least) {
         best = options.rotary_step;
         least = deviation;
@@ -140,7 +157,8 @@ std::vector<RotaryCorrected> rotary_corrections(const TableFormat& format, const
                                                 const TableFormatOptions& options,
                                                 const CompensationTables& tables,
                                                 const std::vector<AxisPosition>& poses) {
-  const RotaryJudgement judgement(format, result, options, tables);
+  const LinearTables of_linear = tables_of_linear_axes(format, result, options);
+  const RotaryJudgement judgement(result, options, tables, of_linear);
   std::vector<RotaryCorrected> corrected;
   for (const AxisPosition& pose : poses) {
     const Correction correction = judgement.by_tables({pose});

@@ -30,8 +30,8 @@ struct RotaryCheck {
 };
 
 /// By the exact model with the identified errors of the rotary axes alone, approached from either side as
-/// often; what the tables correct of linear axes is taken off as the ideal compensation has it. Nothing for a
-/// type without rotary axes.
+/// often; what tables of the linear axes' types alone, written and read back likewise, add with the rotary
+/// axes at 0 is taken off. Nothing for a type without rotary axes.
 std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const FitResult& result,
                                              const TableFormatOptions& options,
                                              const CompensationTables& tables);
@@ -43,7 +43,8 @@ double choose_rotary_step(const TableFormat& format, const FitResult& result, Ta
                           double tolerance);
 
 /// What tables add to the commands of X, Y, Z for errors of linear axes, with the rotary axes at 0: without
-/// what the ideal compensation of the type's rotary axes adds there. `tables` must live as long.
+/// what the ideal compensation of the type's rotary axes adds there, by turning them or, where the tables
+/// turn none, by X, Y, Z alone. `tables` must live as long.
 DisplacementField linear_part(const FitResult& result, const TableFormatOptions& options,
                               const CompensationTables& tables);
 

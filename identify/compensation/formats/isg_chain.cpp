@@ -40,19 +40,19 @@ std::string isg_number(double value, int decimals) {
   return fmt::format(" {:.{}f}", value + 0.0, decimals);
 }
 
-/// Names in one line, values in the next.
-std::string constants_block(const Machine& machine, const PoseErrors<double>& errors, AxisName axis,
-                            CompensationType type) {
+/// Names in one line, values in the next: the centre, and of an axis with errors its location errors.
+std::string constants_block(const Axis& axis, const PoseErrors<double>* errors, CompensationType type) {
   std::string names, values;
-  const Eigen::Vector3d centre = machine.axis(axis).centre / kMetrePerMillimetre;
+  const Eigen::Vector3d centre = axis.centre / kMetrePerMillimetre;
   for (int k = 0; k < 3; ++k) {
-    names += fmt::format(" P{}{}", letter_of(kLinearAxes[static_cast<std::size_t>(k)]), letter_of(axis));
+    names += fmt::format(" P{}{}", letter_of(kLinearAxes[static_cast<std::size_t>(k)]), letter_of(axis.name));
     values += isg_number(centre[k], 6);
   }
   for (const Component component : kAllComponents) {
-    if (!holds_location(type, axis, component)) continue;
-    names += fmt::format(" {}0{}", letter_of_component(component), letter_of(axis));
-    values += isg_number(errors.location[index_of(axis)][index_of(component)] / isg_unit(component), 12);
+    if (errors == nullptr || !holds_location(type, axis.name, component)) continue;
+    names += fmt::format(" {}0{}", letter_of_component(component), letter_of(axis.name));
+    values +=
+        isg_number(errors->location[index_of(axis.name)][index_of(component)] / isg_unit(component), 12);
   }
   return names.substr(1) + "\n" + values.substr(1) + "\n";
 }
@@ -123,10 +123,15 @@ std::vector<std::string> isg_rotary_blocks(const TableFormat& format, const FitR
                      "give both, or R-VOL");
   const JointErrorSource errors = rotary_errors_to_correct(result, options);
   std::vector<std::string> blocks = {tool_block(tool_of(result.machine, options))};
-  for (const AxisName axis : identified_rotary_axes(result)) {
+  const PoseErrors<double> at_home = errors(home_of(result.machine), {});
+  const std::vector<AxisName> identified = identified_rotary_axes(result);
+  for (const AxisName axis : kAllAxes) {
+    if (!is_rotary(axis) || !result.machine.has_axis(axis)) continue;
+    const bool is_known = std::ranges::find(identified, axis) != identified.end();
+    blocks.push_back(constants_block(result.machine.axis(axis), is_known ? &at_home : nullptr, type));
+    if (!is_known) continue;
     const RotaryNodes nodes = rotary_nodes(result, axis, rotary_table_step(options));
     const bool workpiece = result.machine.structure.is_on_workpiece_side(axis);
-    blocks.push_back(constants_block(result.machine, errors(home_of(result.machine), {}), axis, type));
     const std::string motions = motions_block(errors, nodes, type, component && workpiece ? -1.0 : 1.0);
     if (!motions.empty()) blocks.push_back(motions);
   }

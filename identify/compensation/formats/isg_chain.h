@@ -21,8 +21,8 @@ namespace volcal {
 /// "chain CAXYZ" and "workpiece_axes 2", a line each.
 std::string isg_chain_lines(const Machine& machine);
 
-/// Blocks with the rotary errors of the options' type. `component`: of axes on the workpiece side, error
-/// motions of the component, minus those of the tool relative to it.
+/// Blocks with the centres of all rotary axes and the rotary errors of the options' type. `component`: of
+/// axes on the workpiece side, error motions of the component, minus those of the tool relative to it.
 std::vector<std::string> isg_rotary_blocks(const TableFormat& format, const FitResult& result,
                                            const TableFormatOptions& options, bool component);
 

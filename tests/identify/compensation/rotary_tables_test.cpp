@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
+#include <string>
 
 #include "tests/support/five_axis.h"
 #include "tests/support/refusal.h"
@@ -133,6 +136,82 @@ TEST(RotaryTablesOfReversals, SayWhatTheirMeanOfDirectionsLeaves) {
     EXPECT_NEAR(check.without_directions, check.exported.rms, 0.05e-6) << name;
   }
 }
+
+/// EC0C = 80 urad alone, A at 90 degrees. The functional point (110, 0, -200) is (110, 290, 40) mm where the
+/// cradle carries it, turned about its centre (0, 10, 50), and (100, 310) from the centre of C less its 20
+/// mm: (100, 280) mm about (10, -20), y = 10 + 250 = 260. The turn displaces it by 80 urad x (-280, 100) mm
+/// there, which is (-22.4, 0, -8) um in X, Y, Z.
+TEST(RotaryTablesOfIsg, KnowWhereAnAxisWithoutErrorsStands) {
+  const Machine machine = testing::rotary_machine(testing::kTrunnion);
+  const FitResult result = testing::result_with(machine, {.locations = {{"EC0C", 80e-6}}}, 4);
+  const TableFormatOptions options = rotary_options("R-VOL");
+  const TableFormat& format = *find_table_format("isg-csv");
+  const CompensationTables tables = format.read(rotary_files("isg-csv", result, options));
+  AxisPosition at{};
+  at[0] = 0.11;
+  at[index_of(AxisName::A)] = 90.0 * kRadianPerDegree;
+  const Eigen::Vector3d moved = tables.correction(at, {}).linear;
+  EXPECT_LT((moved - Eigen::Vector3d(22.4e-6, 0.0, 8e-6)).norm(), 1e-11) << moved.transpose();
+  EXPECT_LT(check_rotary_axes(format, result, options, tables)->deviation, 0.01e-6);
+}
+
+/// The control moves X, Y and Z for what R-POS corrects.
+TEST(RotaryTablesOfIsg, AreNotOffTheIdealWhereTheyTurnNoAxis) {
+  for (const char* structure : {testing::kTrunnion, testing::kHead, testing::kMixed}) {
+    const FitResult result = rotary_result(structure);
+    TableFormatOptions options = rotary_options("L-VOL+R-VOL");
+    const TableFormat& format = *find_table_format("isg-csv");
+    options.settings = testing::example_settings(format);
+    const CompensationTables tables = format.read(write_tables(format, result, options));
+    EXPECT_LT(deviation_of(format, result, options, tables), 0.01e-6) << structure;
+    options.type = CompensationType::rotary_volumetric();
+    options.step = 0.0;
+    EXPECT_TRUE(make_tables(format, result, options).step.reached) << structure;
+  }
+}
+
+struct OfLinearSteps {
+  const char* format;
+  const char* type;
+};
+
+class RotaryTablesBesideLinearOnes : public ::testing::TestWithParam<OfLinearSteps> {};
+
+/// A wave of X that is zero at every position of the tables, and a reversal that tables of one direction
+/// leave.
+TEST_P(RotaryTablesBesideLinearOnes, AreNotJudgedByWhatTheseLeave) {
+  const auto wave = [](double q) { return 6e-6 * std::sin(2.0 * std::numbers::pi * q / 0.3); };
+  const FitResult result = testing::result_with(
+      testing::rotary_machine(testing::kTrunnion),
+      {.functions = {{"EXX", wave}, {"EYX", wave}, {"ECC", [](double q) { return 30e-6 * std::sin(q); }}},
+       .reversals = {{"EXX", 4e-6}}},
+      36);
+  const TableFormat& format = *find_table_format(GetParam().format);
+  TableFormatOptions options = rotary_options(GetParam().type, 0.0);
+  options.settings = testing::example_settings(format);
+  const MadeTables made = make_tables(format, result, options);
+  EXPECT_GT(made.check.exported.max, 4e-6) << "left by the tables of X";
+  EXPECT_GT(made.rotary_check->before.rms, 1e-6);
+  EXPECT_NEAR(made.rotary_check->exported.rms, made.rotary_check->ideal.rms, 0.1e-6);
+  EXPECT_LT(made.rotary_check->without_directions, 0.1e-6);
+  EXPECT_EQ(made.options.rotary_step, 0.0) << "no finer step is needed";
+  const auto said = [&](FindingCode code) {
+    return std::ranges::count(made.cautions, code, &Finding::code) > 0;
+  };
+  EXPECT_FALSE(said(FindingCode::RotaryTablesOffIdeal));
+  EXPECT_FALSE(said(FindingCode::RotaryTablesWithoutDirections));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RotaryTablesBesideLinearOnes,
+                         ::testing::Values(OfLinearSteps{"neutral-csv", "L-VOL+R-VOL"},
+                                           OfLinearSteps{"linuxcnc-grid", "L-VOL+R-VOL"},
+                                           OfLinearSteps{"isg-csv", "L-VOL+R-VOL"},
+                                           OfLinearSteps{"sinumerik", "L-POS+R-POS"}),
+                         [](const auto& given) {
+                           std::string name = given.param.format;
+                           std::erase(name, '-');
+                           return name;
+                         });
 
 TEST(RotaryTableTypes, AreWhatTheFormatHoldsOfTheMachine) {
   const FitResult result = rotary_result(testing::kTrunnion);

@@ -2,6 +2,9 @@
 /// of two axes without and with them. By the tables as the controller reads them and the exact model, mean of
 /// both directions of approach.
 
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -34,21 +37,15 @@ constexpr double kAxisStep = 5.0 * kRadianPerDegree;
 constexpr double kErrorMapStep = 10.0 * kRadianPerDegree;
 
 /// Nodes of one axis, the tool point staying where it is.
-RotaryAxisAdded added_along(const FitResult& result, const MadeTables& made, const Tool& tool,
-                            const Eigen::Vector3d& point_w, AxisName axis) {
-  RotaryAxisAdded added{axis, rotary_nodes(result, axis, kAxisStep).positions, {}, {}};
+std::vector<AxisPosition> poses_along(const Machine& machine, const Tool& tool,
+                                      const Eigen::Vector3d& point_w, const RotaryAxisAdded& added) {
   std::vector<AxisPosition> poses;
   for (const double at : added.position) {
-    AxisPosition rotary = rotary_axes_at_rest(result.machine);
-    rotary[index_of(axis)] = at;
-    poses.push_back(followed_pose(result.machine, tool, point_w, rotary));
+    AxisPosition rotary = rotary_axes_at_rest(machine);
+    rotary[index_of(added.axis)] = at;
+    poses.push_back(followed_pose(machine, tool, point_w, rotary));
   }
-  for (const RotaryCorrected& each :
-       rotary_corrections(*made.format, result, made.options, made.read_back, poses)) {
-    added.turned.push_back(each.correction.rotary[direction_of(axis)]);
-    added.moved.push_back(each.correction.linear);
-  }
-  return added;
+  return poses;
 }
 
 /// Empty of tables without a type for rotary axes.
@@ -58,12 +55,25 @@ std::optional<TablePictures> table_pictures(const FitResult& result, const MadeT
   TablePictures pictures;
   pictures.tool = tool.name;
   pictures.point_w = middle_point_w(result.machine, tool);
-  for (const AxisName axis : identified_rotary_axes(result))
-    pictures.axes.push_back(added_along(result, made, tool, pictures.point_w, axis));
   const RotaryMap map =
       rotary_map(result, tool, pictures.point_w, conditions_of(result, made.options), kErrorMapStep);
+  std::vector<AxisPosition> poses = map.poses;
+  for (const AxisName axis : identified_rotary_axes(result)) {
+    pictures.axes.push_back({axis, rotary_nodes(result, axis, kAxisStep).positions, {}, {}});
+    std::ranges::copy(poses_along(result.machine, tool, pictures.point_w, pictures.axes.back()),
+                      std::back_inserter(poses));
+  }
+  const std::vector<RotaryCorrected> corrected =
+      rotary_corrections(*made.format, result, made.options, made.read_back, poses);
+  auto each = corrected.begin() + static_cast<std::ptrdiff_t>(map.poses.size());
   pictures.map_axes = map.axes;
-  pictures.map = rotary_corrections(*made.format, result, made.options, made.read_back, map.poses);
+  pictures.map.assign(corrected.begin(), each);
+  for (RotaryAxisAdded& added : pictures.axes) {
+    for (std::size_t i = 0; i < added.position.size(); ++i, ++each) {
+      added.turned.push_back(each->correction.rotary[direction_of(added.axis)]);
+      added.moved.push_back(each->correction.linear);
+    }
+  }
   return pictures;
 }
 

@@ -143,9 +143,7 @@ TcpRewriteOptions tcp_options(const FitResult& result, const Wishes& wishes) {
 /// With tool centre point motion.
 CompensatedProgram tcp_compensated(const FitResult& result, const Conditions& conditions,
                                    const Wishes& wishes, const std::string& program) {
-  Tool tool;
-  if (const auto index = result.machine.tool_index(wishes.tool)) tool = result.machine.tools[*index];
-  const JointErrorSource errors = joint_errors(result, tool, conditions);
+  const ErrorsOfOffset errors = tcp_errors_of(result, wishes.tool, conditions);
   TcpRewriter rewriter(result.machine, errors, wishes.setup, wishes.point, tcp_options(result, wishes),
                        wishes.name);
   TcpCheck check(result.machine, errors, wishes.setup, wishes.point);

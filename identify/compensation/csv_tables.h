@@ -58,7 +58,11 @@ struct TableMetadata {
   /// Identified displacement of tools' offsets, m; none in files that do not say.
   std::map<std::string, Eigen::Vector3d> tool_errors;
 
+  /// Their displacement by effects, all axes at home, m; none in files that do not say.
+  std::map<std::string, Eigen::Vector3d> tool_effects;
+
   Eigen::Vector3d tool_offset() const;  ///< of `tool`, m
+  Eigen::Vector3d tool_effect() const;  ///< the same of `tool`
 };
 TableMetadata read_table_metadata(const TableFile& file);
 

@@ -280,4 +280,24 @@ JointErrorSource joint_errors(const FitResult& result, const Tool& tool, const C
   };
 }
 
+JointErrorSource joint_and_tool_errors(const FitResult& result, const Tool& tool,
+                                       const Conditions& conditions) {
+  const auto table = outermost_table_axis(result.machine.structure);
+  if (!table) return joint_errors(result, tool, conditions);
+  return [field = ErrorField(result, tool, conditions), chain = KinematicChain(result.machine),
+          table = *table](const AxisPosition& position, const ApproachDirection& direction) {
+    PoseErrors<double> errors = field.joint_errors(position, direction);
+    const Vector3d offset_t = field.tool_displacement(position, direction);
+    if (offset_t.isZero(0.0)) return errors;
+    JointLever levers[kAxisCount];
+    chain.levers(position, Vector3d::Zero(), levers);
+    const Matrix3d& rotation_ws = joint_lever(levers, chain.joint_count(), table).rotation_ws;
+    const Vector3d displacement_s =
+        rotation_ws.transpose() * (chain.nominal_rotation_wt(position) * offset_t);
+    for (std::size_t k = 0; k < 3; ++k)
+      errors.location[index_of(table)][k] -= displacement_s[static_cast<Eigen::Index>(k)];
+    return errors;
+  };
+}
+
 }  // namespace volcal

@@ -113,4 +113,9 @@ Eigen::Vector3d linear_moves(const Eigen::Matrix3d& directions_w, const Eigen::V
 /// Errors as identified, at stated conditions.
 JointErrorSource joint_errors(const FitResult& result, const Tool& tool, const Conditions& conditions);
 
+/// The same and what effects displace the tool's offset by. Where a table turns the workpiece that is the
+/// same as a displacement of its outermost axis; without one it is left out.
+JointErrorSource joint_and_tool_errors(const FitResult& result, const Tool& tool,
+                                       const Conditions& conditions);
+
 }  // namespace volcal

@@ -10,6 +10,7 @@
 
 #include "volcal/identify/compensation/csv_tables.h"
 #include "volcal/identify/compensation/rotary_tables.h"
+#include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/errors/rotary/rotary_grid.h"
 #include "volcal/identify/text/csv_cell.h"
 #include "volcal/model/description/errors.h"
@@ -78,6 +79,18 @@ void add_tool_errors(MetadataWriter& out, const FitResult& result) {
     if (block == nullptr) continue;
     const Eigen::Vector3d error = result.parameters.segment<3>(block->offset);
     out.add_vector(tool_error_key(tool.name), error / kMetrePerMicrometre, "um");
+  }
+}
+
+std::string tool_effects_key(const std::string& tool) { return "tools." + tool + ".displaced_by_effects"; }
+
+/// With all axes at home: no function of an axis holds that of every tool.
+void add_tool_effects(MetadataWriter& out, const FitResult& result, const TableFormatOptions& options) {
+  for (const Tool& tool : result.machine.tools) {
+    const Eigen::Vector3d displaced = ErrorField(result, tool, conditions_of(result, options))
+                                          .tool_displacement(home_of(result.machine), kTowardsPlus);
+    if (!displaced.isZero(0.0))
+      out.add_vector(tool_effects_key(tool.name), displaced / kMetrePerMicrometre, "um");
   }
 }
 
@@ -189,9 +202,11 @@ class MetadataReader {
     if (metadata.entries.contains(std::string(kEffectConditions))) read_effects(metadata);
     for (const Axis& axis : metadata.machine.axes) read_measured(axis, metadata);
     for (const Tool& tool : metadata.machine.tools) {
-      const std::string key = tool_error_key(tool.name);
-      if (rows_.contains(key + ".x_um"))
-        metadata.tool_errors[tool.name] = vector(key, "um", kMetrePerMicrometre);
+      const auto read = [&](const std::string& key, auto& displacements) {
+        if (rows_.contains(key + ".x_um")) displacements[tool.name] = vector(key, "um", kMetrePerMicrometre);
+      };
+      read(tool_error_key(tool.name), metadata.tool_errors);
+      read(tool_effects_key(tool.name), metadata.tool_effects);
     }
     return metadata;
   }
@@ -346,6 +361,7 @@ std::string table_metadata_csv(const FitResult& result, const TableFormatOptions
   if (!options.type.rotary().empty()) add_rotary_types(out, result, options);
   add_machine(out, result.machine);
   add_tool_errors(out, result);
+  add_tool_effects(out, result, options);
   add_measured(out, result);
   add_run(out, result, options);
   for (const std::string_view key : recordable_conditions()) {
@@ -361,6 +377,11 @@ std::string table_metadata_csv(const FitResult& result, const TableFormatOptions
 Eigen::Vector3d TableMetadata::tool_offset() const {
   const auto index = machine.tool_index(tool);
   return index ? machine.tools[*index].offset : Eigen::Vector3d::Zero();
+}
+
+Eigen::Vector3d TableMetadata::tool_effect() const {
+  const auto found = tool_effects.find(tool);
+  return found == tool_effects.end() ? Eigen::Vector3d(0.0, 0.0, 0.0) : found->second;
 }
 
 TableMetadata read_table_metadata(const TableFile& file) { return MetadataReader(file).read(); }

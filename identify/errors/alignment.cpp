@@ -8,10 +8,12 @@
 #include <utility>
 
 #include "volcal/identify/errors/alignment_checks.h"
+#include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
+#include "volcal/model/effects/registry.h"
 #include "volcal/model/kinematics/rotary_datum.h"
 #include "volcal/model/observation/measurement_model.h"
 #include "volcal/model/observation/restated_readings.h"
@@ -89,6 +91,7 @@ class Realignment {
     FitResult& result = aligned.result;
     Eigen::MatrixXd rows = parameter_rows(result.layout);
     if (has_rotary_errors(old_)) carry_rotary_axes(result.layout, rows);
+    if (tool_turn_) give_turn_to_spindle(result, rows);
     result.parameters = rows * extended();
     aligned.frame_rotation = phi_ * extended();
     aligned.frame_covariance.setZero(phi_.rows(), phi_.rows());
@@ -98,7 +101,7 @@ class Realignment {
       result.covariance = jacobian * old_.covariance * jacobian.transpose();
       aligned.frame_covariance = phi_.leftCols(size) * old_.covariance * phi_.leftCols(size).transpose();
     }
-    turn_tools();
+    if (!has_rotary_errors(old_)) turn_tools();
     result.machine = machine_;
     result.adjustment = nullptr;
     result.residuals.clear();
@@ -325,8 +328,21 @@ class Realignment {
     }
     for (Eigen::Index i = 0; i < line_count; ++i)
       rows.row(offsets[static_cast<std::size_t>(i)]) += solution.row(i);
-    tool_turn_ = solution.rows() > line_count + 6 ? VectorRows(solution.bottomRows<3>())
-                                                  : VectorRows::Zero(3, columns());
+    if (solution.rows() > line_count + 6) tool_turn_ = solution.bottomRows<3>();
+  }
+
+  /// The control goes on with the offsets that it knows, and a table turns what they miss the point by: the
+  /// turn is an error of the spindle, and the offsets stay.
+  void give_turn_to_spindle(FitResult& result, Eigen::MatrixXd& rows) const {
+    EffectSpec& spindle = only_effect("spindle-direction", result.identified);
+    const auto effect = find_effect(spindle.kind)->make(spindle, result.identified.file);
+    for (Eigen::Index about = 0; about < 3; ++about) {
+      const EffectAmplitude& amplitude = effect->amplitudes()[static_cast<std::size_t>(about)];
+      const int place = place_of_amplitude(amplitude, result.layout);
+      rows.conservativeResizeLike(Eigen::MatrixXd::Zero(result.layout.size, columns()));
+      rows.row(place) += tool_turn_->row(about);
+      amplitude.keep(rows.row(place).dot(extended()), spindle.options);
+    }
   }
 
   static Eigen::MatrixXd solved(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -339,7 +355,6 @@ class Realignment {
   }
 
   Eigen::Vector3d tool_turn() const {
-    if (tool_turn_) return *tool_turn_ * extended();
     Eigen::Vector3d turn = -(phi_ * extended());
     for (const Joint& joint : machine_.structure.joints) {
       if (!is_rotary(joint.axis)) turn += angles_at_origin(joint.axis) * extended();
@@ -401,7 +416,8 @@ class Realignment {
   Machine machine_;
   std::array<VectorRows, 3> direction_;
   VectorRows phi_;
-  std::optional<VectorRows> tool_turn_;  ///< that errors make up for; of a machine with rotary errors
+  /// Of a machine with rotary errors, where no rotary axis carries the tools and could take it.
+  std::optional<VectorRows> tool_turn_;
 };
 
 std::string alignment_words(const FitResult& result) {

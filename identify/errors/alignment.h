@@ -8,7 +8,10 @@
 /// phi turns the machine frame, tau moves its origin. Both are linear in the parameters, so theta' = J theta
 /// + k and C' = J C J^T: errors are the same up to the rigid motion, and so is the covariance of what a rigid
 /// motion leaves. Angles that axes have at the new origin become directions of the axes that they carry, and
-/// turn the tools: offsets are stated in the new frame.
+/// turn the tools. Where a table turns the workpiece and no rotary axis the tools, offsets stay what the
+/// control knows, and the turn is the effect `spindle-direction`. A rotary axis on the tool side takes it
+/// into its lines. Without errors of rotary axes it displaces a tool everywhere alike, and the offsets are
+/// stated in the new frame.
 
 #include <optional>
 #include <string>
@@ -42,8 +45,8 @@ struct AlignedResult {
 };
 
 /// Lines of rotary axes stay where they are: their location errors are restated in the new frame, so that
-/// the error at every pose is the same but for a rigid motion of the workpiece and, where no rotary axis
-/// stands between the linear axes and the tool, of the tools. Error motions of rotary axes do not change.
+/// the error at every pose is the same but for a rigid motion of the workpiece. Error motions of rotary axes
+/// do not change.
 ///
 /// Throws InputError with a remedy: a machine without X, Y and Z, location errors of rotary axes that the
 /// model lacks and the new frame needs, primary = secondary, an origin outside the travel, a spindle with

@@ -16,8 +16,9 @@
 namespace volcal {
 namespace {
 
-constexpr double kSameOrigin = 1e-9;    // m
-constexpr double kLargestTilt = 10e-3;  // rad
+constexpr double kSameOrigin = 1e-9;                      // m
+constexpr double kLargestTilt = 10e-3;                    // rad
+const Eigen::Vector3d kObliqueOffset(0.11, 0.07, -0.13);  // m
 
 void check_datum(const Machine& machine, const Datum& datum) {
   for (const AxisName axis : {datum.primary, datum.secondary}) {
@@ -67,10 +68,15 @@ std::set<std::string> by_commanded_positions(const FitResult& result) {
 
 /// Parameters of effects that are the same at every position, as a reversal or a growth with a temperature.
 std::set<int> without_position(const FitResult& result) {
-  const MachineEffects effects(result, result.machine.functional_tools().front(), default_conditions(result));
+  const Tool tool = result.machine.functional_tools().front();
+  Tool oblique = tool;  // turned about any direction it moves
+  oblique.offset += kObliqueOffset;
   std::set<int> parameters;
-  for (const EffectColumn& column : effects.columns()) {
-    if (effects.reach(column.effect).positions() == 0) parameters.insert(column.parameter);
+  for (const Tool& each : {tool, oblique}) {
+    const MachineEffects effects(result, each, default_conditions(result));
+    for (const EffectColumn& column : effects.columns()) {
+      if (effects.reach(column.effect).positions() == 0) parameters.insert(column.parameter);
+    }
   }
   return parameters;
 }

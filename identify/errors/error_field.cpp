@@ -84,13 +84,12 @@ ErrorField::ErrorField(const FitResult& result, const Tool& tool, const Conditio
   }
 }
 
-/// `offset_t`: displacement of the tool's offset.
+/// `offset_t`: displacement of the tool's offset by effects.
 PoseErrors<double> ErrorField::errors_at(const AxisPosition& position, const ApproachDirection& direction,
                                          Vector3d& offset_t) const {
   const AxisPosition held = measured_.held(position);
   PoseErrors<double> errors = pose_errors(layout_, held, parameters_);
   offset_t.setZero();
-  if (tool_parameter_ >= 0) offset_t = parameters_.segment<3>(tool_parameter_);
   for (const Expansion& expansion : expansions_) {
     const double deviation =
         expansion.parameter < 0 ? 0.0 : parameters_[expansion.parameter] * expansion.excess;
@@ -118,9 +117,17 @@ PoseErrors<double> ErrorField::joint_errors(const AxisPosition& position,
   return errors_at(position, direction, offset_t);
 }
 
+Vector3d ErrorField::tool_displacement(const AxisPosition& position,
+                                       const ApproachDirection& direction) const {
+  Vector3d offset_t;
+  errors_at(position, direction, offset_t);
+  return offset_t;
+}
+
 PoseErrorVector ErrorField::at(const AxisPosition& position, const ApproachDirection& direction) const {
   Vector3d offset_t;
   const PoseErrors<double> errors = errors_at(position, direction, offset_t);
+  if (tool_parameter_ >= 0) offset_t += parameters_.segment<3>(tool_parameter_);
   const ToolTwist twist = chain_.first_order(position, tool_.offset, errors);
   PoseErrorVector error;
   error << twist.displacement_w, twist.rotation_tool_side_w + twist.rotation_workpiece_side_w;

@@ -80,9 +80,13 @@ class ErrorField {
   /// By tool and direction at a commanded position. Rotary errors are in it as far as they were identified.
   PoseErrorVector at(const AxisPosition& position, const ApproachDirection& direction = {}) const;
   /// What it is made of: the errors of every axis at that pose, functions held, expansions and effects on
-  /// error motions included. The tool's offset is left out.
+  /// error motions included. The tool's offset is left out: tool_displacement().
   PoseErrors<double> joint_errors(const AxisPosition& position,
                                   const ApproachDirection& direction = {}) const;
+  /// Displacement of the tool's offset by effects, tool coordinates, m; without what an offset that was
+  /// estimated is in error by.
+  Eigen::Vector3d tool_displacement(const AxisPosition& position,
+                                    const ApproachDirection& direction = {}) const;
   /// Derivatives to the parameters; errors are linear in all of them but those of an effect's shape.
   PoseErrorRows rows(const AxisPosition& position, const ApproachDirection& direction = {}) const;
   /// The same with error functions as they are beyond the measured positions and with curves and surfaces

@@ -11,12 +11,31 @@
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/variable.h"
 #include "volcal/model/effects/conditions_of_effect.h"
+#include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/model/observation/campaign_binding.h"
 
 namespace volcal {
 namespace {
+
+ParameterBlock block_of_one(ParameterKind kind, const std::string& name, double value,
+                            const std::string& unit, double si_per_unit) {
+  ParameterBlock block;
+  block.kind = kind;
+  block.name = name;
+  block.labels = {""};
+  block.units = {unit};
+  block.si_per_unit = {si_per_unit};
+  block.prior_mean = block.prior_sigma = Eigen::VectorXd::Zero(1);
+  block.guess = Eigen::VectorXd::Constant(1, value);
+  return block;
+}
+
+ParameterBlock stated_block(const EffectAmplitude& amplitude) {
+  return block_of_one(ParameterKind::Effect, amplitude.label, amplitude.guess, amplitude.unit(),
+                      amplitude.si_per_unit());
+}
 
 /// Parameters one after the other, with their values.
 class StatedLayout {
@@ -27,8 +46,8 @@ class StatedLayout {
     }
     layout_.function_size = size();
     for (const auto& [symbol, value] : model.locations) {
-      ParameterBlock& block = add_block(ParameterKind::Location, symbol.name(), value,
-                                        std::string(edge_unit(symbol.component)), kMicro);
+      ParameterBlock& block = add(block_of_one(ParameterKind::Location, symbol.name(), value,
+                                               std::string(edge_unit(symbol.component)), kMicro));
       block.location = symbol;
     }
     for (const Axis& axis : machine.axes) add_expansion(axis, model);
@@ -58,20 +77,10 @@ class StatedLayout {
     values_.insert(values_.end(), found->second.coefficients.begin(), found->second.coefficients.end());
   }
 
-  ParameterBlock& add_block(ParameterKind kind, const std::string& name, double value,
-                            const std::string& unit, double si_per_unit) {
-    ParameterBlock block;
-    block.kind = kind;
-    block.name = name;
-    block.labels = {""};
-    block.units = {unit};
-    block.si_per_unit = {si_per_unit};
-    block.prior_mean = block.prior_sigma = Eigen::VectorXd::Zero(1);
+  ParameterBlock& add(ParameterBlock block) {
     block.offset = size();
-    block.guess = Eigen::VectorXd::Constant(1, value);
-    layout_.blocks.push_back(std::move(block));
-    values_.push_back(value);
-    return layout_.blocks.back();
+    values_.push_back(block.guess[0]);
+    return layout_.blocks.emplace_back(std::move(block));
   }
 
   void add_expansion(const Axis& axis, const ModelSpec& model) {
@@ -84,9 +93,7 @@ class StatedLayout {
 
   void add_effect(const EffectSpec& spec, const std::string& file) {
     const std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, file);
-    for (const EffectAmplitude& amplitude : effect->amplitudes())
-      add_block(ParameterKind::Effect, amplitude.label, amplitude.guess, amplitude.unit(),
-                amplitude.si_per_unit());
+    for (const EffectAmplitude& amplitude : effect->amplitudes()) add(stated_block(amplitude));
   }
 
   void add_tool(const std::string& tool, const Eigen::Vector3d& error) {
@@ -109,6 +116,20 @@ class StatedLayout {
 };
 
 }  // namespace
+
+EffectSpec& only_effect(const std::string& kind, ModelSpec& model) {
+  if (std::ranges::find(model.effects, kind, &EffectSpec::kind) == model.effects.end())
+    model.effects.push_back(effect_spec(kind, {}));
+  return *std::ranges::find(model.effects, kind, &EffectSpec::kind);
+}
+
+int place_of_amplitude(const EffectAmplitude& amplitude, ParameterLayout& layout) {
+  if (const auto place = layout.find_parameter(amplitude.label)) return *place;
+  ParameterBlock block = stated_block(amplitude);
+  block.offset = layout.size++;
+  layout.blocks.push_back(std::move(block));
+  return layout.blocks.back().offset;
+}
 
 FitResult stated_result(const Machine& machine, const ModelSpec& model) {
   FitResult result;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "volcal/identify/result/result.h"
+#include "volcal/model/effects/effect.h"
 
 namespace volcal {
 
@@ -22,6 +23,11 @@ bool states_errors(const ModelSpec& model);
 
 /// Those that count as nothing where no fit follows.
 std::vector<EffectSpec> effects_without_amplitude(const ModelSpec& model);
+
+/// The effect of that kind in the model, made without values where it has none.
+EffectSpec& only_effect(const std::string& kind, ModelSpec& model);
+/// Where the parameter of an amplitude stands; one that is new is put at the end, as a stated one.
+int place_of_amplitude(const EffectAmplitude& amplitude, ParameterLayout& layout);
 
 /// Throws InputError where it states none, and for an effect without an amplitude, which would count as
 /// nothing.

@@ -62,8 +62,8 @@ struct TcpDone {
   double length = 0.0;  ///< of feed motions, m
 };
 
-inline JointErrorSource tcp_errors(const FitResult& result) {
-  return joint_errors(result, result.machine.tools.front(), default_conditions(result));
+inline ErrorsOfOffset tcp_errors(const FitResult& result) {
+  return tcp_errors_of(result, result.machine.tools.front().name, default_conditions(result));
 }
 
 inline TcpDone tcp_rewritten(const std::string& program, const FitResult& result,

@@ -146,9 +146,7 @@ struct RewrittenTcp {
 
 RewrittenTcp rewrite_tcp(const FitResult& result, const CompensateArguments& arguments,
                          const Conditions& conditions, TcpBegin begin) {
-  Tool tool;
-  if (const auto index = result.machine.tool_index(arguments.tool)) tool = result.machine.tools[*index];
-  const JointErrorSource errors = joint_errors(result, tool, conditions);
+  const ErrorsOfOffset errors = tcp_errors_of(result, arguments.tool, conditions);
   const NcSetup setup = program_setup(arguments.setup, result.machine);
   const FunctionalPoint point = functional_point(result.machine, arguments.tool, arguments.lengths_from);
   TcpRewriter rewriter(result.machine, errors, setup, point,

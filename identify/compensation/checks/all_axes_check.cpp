@@ -59,7 +59,7 @@ std::optional<AllAxesCheck> check_all_axes(const FitResult& result, const TableF
   const Tool& tool = tool_of(machine, options);
   FiveAxisSettings settings;
   settings.tool_offset = tool.offset;
-  const JointErrorSource all = joint_errors(result, tool, conditions_of(result, options));
+  const JointErrorSource all = joint_and_tool_errors(result, tool, conditions_of(result, options));
   const FiveAxisCompensation of_all(machine, settings, all);
   const FiveAxisCompensation of_linear(machine, settings, of_linear_axes(all));
   TableFormatOptions whole = options;

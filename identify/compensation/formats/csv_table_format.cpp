@@ -145,7 +145,8 @@ CompensationTables read_csv(std::span<const TableFile> files) {
       });
   if (!metadata.type.rotary().empty()) {
     const bool is_known = hold_errors_of_table(rows, metadata.machine.structure);
-    const Eigen::Vector3d left = is_known ? at_home : Eigen::Vector3d::Zero();
+    const Eigen::Vector3d left =
+        is_known ? Eigen::Vector3d(at_home + metadata.tool_effect()) : Eigen::Vector3d::Zero();
     result.terms.push_back(rotary_term(metadata, tool, left, tables));
   }
   // The grids hold the same once more: they must be sound.

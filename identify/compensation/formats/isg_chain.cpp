@@ -29,10 +29,11 @@ bool holds_component(CompensationType type, AxisName axis, Component component) 
   return type.has(own ? CompensationPart::RotaryPositioning : CompensationPart::RotaryAngular);
 }
 
-bool holds_location(CompensationType type, AxisName axis, Component component) {
+/// Along its own direction a line has no displacement, but where it carries the error at home.
+bool holds_location(CompensationType type, AxisName axis, Component component, double value) {
   const bool same = direction_of(component) == direction_of(axis);
-  if (!same) return type.has(CompensationPart::RotaryLocation);
-  return is_rotation(component) && type.has(CompensationPart::RotaryPositioning);
+  if (same && is_rotation(component)) return type.has(CompensationPart::RotaryPositioning);
+  return type.has(CompensationPart::RotaryLocation) && (!same || value != 0.0);
 }
 
 std::string isg_number(double value, int decimals) {
@@ -49,10 +50,11 @@ std::string constants_block(const Axis& axis, const PoseErrors<double>* errors, 
     values += isg_number(centre[k], 6);
   }
   for (const Component component : kAllComponents) {
-    if (errors == nullptr || !holds_location(type, axis.name, component)) continue;
+    if (errors == nullptr) break;
+    const double value = errors->location[index_of(axis.name)][index_of(component)];
+    if (!holds_location(type, axis.name, component, value)) continue;
     names += fmt::format(" {}0{}", letter_of_component(component), letter_of(axis.name));
-    values +=
-        isg_number(errors->location[index_of(axis.name)][index_of(component)] / isg_unit(component), 12);
+    values += isg_number(value / isg_unit(component), 12);
   }
   return names.substr(1) + "\n" + values.substr(1) + "\n";
 }

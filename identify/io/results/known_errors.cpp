@@ -145,6 +145,10 @@ FitResult result_of_tables(const std::filesystem::path& folder) {
   model.measured = metadata.measured.empty() ? measured.ranges() : metadata.measured;
   model.conditions = metadata.conditions;
   model.tool_errors = metadata.tool_errors;
+  for (const auto& [tool, displaced] : metadata.tool_effects) {
+    Eigen::Vector3d& error = model.tool_errors.emplace(tool, Eigen::Vector3d::Zero()).first->second;
+    error += displaced;
+  }
   FitResult result = stated_result(metadata.machine, model);
   result.alignment = metadata.alignment;
   add_finding_of_tables(metadata.made_for, result);

@@ -6,7 +6,7 @@
 
 namespace volcal {
 
-TcpCheck::TcpCheck(const Machine& machine, JointErrorSource errors, NcSetup setup,
+TcpCheck::TcpCheck(const Machine& machine, ErrorsOfOffset errors, NcSetup setup,
                    FunctionalPoint functional_point)
     : machines_(machine, std::move(errors), false),
       original_(machine, setup, functional_point, "the program"),

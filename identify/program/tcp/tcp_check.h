@@ -31,7 +31,7 @@ struct TcpErrors {
 class TcpCheck {
  public:
   /// As TcpRewriter.
-  TcpCheck(const Machine& machine, JointErrorSource errors, NcSetup setup, FunctionalPoint functional_point);
+  TcpCheck(const Machine& machine, ErrorsOfOffset errors, NcSetup setup, FunctionalPoint functional_point);
 
   /// A line and what it was rewritten into. Throws InputError where the rewriting cannot be followed.
   void add(std::string_view line, std::span<const NcWrittenLine> written);

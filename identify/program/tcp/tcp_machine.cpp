@@ -140,13 +140,15 @@ ApproachDirection TcpMachine::directions(const TcpPose& from, const TcpPose& to,
   return directions;
 }
 
-TcpMachines::TcpMachines(const Machine& machine, JointErrorSource errors, bool orientation)
+TcpMachines::TcpMachines(const Machine& machine, ErrorsOfOffset errors, bool orientation)
     : machine_(machine), errors_(std::move(errors)), orientation_(orientation) {}
 
 const TcpMachine& TcpMachines::with(const Eigen::Vector3d& tool_offset) {
   const std::string key =
       fmt::format("{:.9f} {:.9f} {:.9f}", tool_offset.x(), tool_offset.y(), tool_offset.z());
-  return machines_.try_emplace(key, machine_, tool_offset, errors_, orientation_).first->second;
+  const auto known = machines_.find(key);
+  if (known != machines_.end()) return known->second;
+  return machines_.try_emplace(key, machine_, tool_offset, errors_(tool_offset), orientation_).first->second;
 }
 
 }  // namespace volcal

@@ -7,6 +7,7 @@
 /// turn count modulo it.
 
 #include <Eigen/Core>
+#include <functional>
 #include <map>
 #include <string>
 
@@ -68,17 +69,20 @@ class TcpMachine {
   FiveAxisCompensation compensation_;
 };
 
+/// Errors of every axis with a tool of that offset, m.
+using ErrorsOfOffset = std::function<JointErrorSource(const Eigen::Vector3d& offset)>;
+
 /// One for every tool that a program uses.
 class TcpMachines {
  public:
   /// As TcpMachine.
-  TcpMachines(const Machine& machine, JointErrorSource errors, bool orientation);
+  TcpMachines(const Machine& machine, ErrorsOfOffset errors, bool orientation);
   /// Stays valid.
   const TcpMachine& with(const Eigen::Vector3d& tool_offset);
 
  private:
   Machine machine_;
-  JointErrorSource errors_;
+  ErrorsOfOffset errors_;
   bool orientation_;
   std::map<std::string, TcpMachine> machines_;  ///< by tool offset
 };

@@ -43,7 +43,7 @@ double inverse_time(double feed, double share) { return feed / std::max(share, 1
 
 }  // namespace
 
-TcpRewriter::TcpRewriter(const Machine& machine, JointErrorSource errors, NcSetup setup,
+TcpRewriter::TcpRewriter(const Machine& machine, ErrorsOfOffset errors, NcSetup setup,
                          FunctionalPoint functional_point, TcpRewriteOptions options, std::string file)
     : machine_(machine),
       machines_(machine, std::move(errors), options.orientation),
@@ -297,6 +297,16 @@ TcpRewriteOptions tcp_options_of(const FitResult& result) {
   for (const AxisName axis : result.machine.rotary_axes())
     options.reference[static_cast<std::size_t>(direction_of(axis))] = reference_of(result, axis);
   return options;
+}
+
+ErrorsOfOffset tcp_errors_of(const FitResult& result, const std::string& tool, const Conditions& conditions) {
+  Tool named;
+  if (const auto index = result.machine.tool_index(tool)) named = result.machine.tools[*index];
+  return [&result, named, conditions](const Eigen::Vector3d& offset) {
+    Tool carried = named;
+    carried.offset = offset;
+    return joint_and_tool_errors(result, carried, conditions);
+  };
 }
 
 }  // namespace volcal

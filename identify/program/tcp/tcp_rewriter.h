@@ -46,6 +46,10 @@ struct TcpRewriteOptions {
   std::vector<std::string> header;         ///< lines above the program (program_header.h); empty = none
 };
 
+/// Of a result, what effects displace the tool's offset by included; `tool`: whose name effects may ask for,
+/// empty for none. `result` must live as long.
+ErrorsOfOffset tcp_errors_of(const FitResult& result, const std::string& tool, const Conditions& conditions);
+
 /// What a result says of the axes: which of them have errors, where the others must stay, where was measured.
 TcpRewriteOptions tcp_options_of(const FitResult& result);
 
@@ -68,9 +72,8 @@ class TcpRewriter {
  public:
   /// Takes what one line becomes; `at` is the share of its motion that a written line ends at.
   using Sink = std::function<void(std::string_view line, std::span<const NcWrittenLine> written)>;
-  /// Errors of every axis; the same for every tool.
-  TcpRewriter(const Machine& machine, JointErrorSource errors, NcSetup setup,
-              FunctionalPoint functional_point, TcpRewriteOptions options, std::string file);
+  TcpRewriter(const Machine& machine, ErrorsOfOffset errors, NcSetup setup, FunctionalPoint functional_point,
+              TcpRewriteOptions options, std::string file);
 
   /// The next line, with its line end. Throws InputError for what cannot be rewritten.
   void rewrite(std::string_view line, const Sink& sink);

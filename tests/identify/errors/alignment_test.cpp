@@ -378,6 +378,11 @@ TEST(Alignment, CarriesTheLinesOfRotaryAxes) {
       const PosedErrors after = posed_errors(aligned, result.machine, 3);
       EXPECT_GT(before.value.norm(), 1e-4) << code;
       EXPECT_LT((before.value - after.value).norm(), 1e-7 * before.value.norm()) << code;
+      const Eigen::MatrixXd u2_before = before.rows * result.covariance * before.rows.transpose();
+      const Eigen::MatrixXd u2_after = after.rows * aligned.covariance * after.rows.transpose();
+      EXPECT_LT((u2_before - u2_after).norm(), 1e-6 * u2_before.norm()) << code;
+      for (std::size_t tool = 0; tool < result.machine.tools.size(); ++tool)
+        EXPECT_EQ(aligned.machine.tools[tool].offset, result.machine.tools[tool].offset) << code;
       for (const LocationSymbol symbol : independent_locations(result.machine)) {
         if (is_rotary(symbol.axis)) {
           EXPECT_NE(aligned.layout.find_location(symbol), nullptr) << code << " " << symbol.name();
@@ -402,51 +407,6 @@ TEST(Alignment, TiltsTheLineOfARotaryAxisByHand) {
   // The line passes (0, 20, 50) mm of the old frame: 20 urad about z move it by phi x p = (-0.4, 0, 0) um,
   // along itself.
   EXPECT_NEAR(location_of(aligned.result, "EZ0A"), 0.0, 1e-12);
-}
-
-/// Readings of a sphere by an R-test are the errors at its poses less their mean. They were taken while the
-/// control knew the former offset of the mandrel; with the turned one the errors of the aligned result are
-/// the readings, and were not before: phi x offset is 3 um, and turns with the table.
-TEST(Alignment, ReadingsThatCountFromTheNominalPointAreRestated) {
-  const Machine machine = testing_support::five_axis_machine("w C' A' b X Y Z t");
-  testing::GivenErrors given;
-  for (const LocationSymbol symbol : independent_locations(machine)) given.locations[symbol.name()] = 0.0;
-  given.locations["EC0Y"] = 50e-6;
-  const FitResult result = result_with(machine, given, 4);
-  const FitResult aligned = align_result(result, to_datum(AxisName::Y, AxisName::X)).result;
-  constexpr std::size_t kMandrel = 2;
-  EXPECT_NEAR((aligned.machine.tools[kMandrel].offset - machine.tools[kMandrel].offset).norm(), 3e-6, 1e-9);
-  testing_support::GridPlan plan;
-  plan.noise = 0.0;
-  Campaign campaign = testing_support::r_test_campaign(
-      testing_support::five_axis_truth(machine, {0.0, 0.0, 0.0, 0.0}, 1), plan, 1);
-  const auto spread = [&](const FitResult& errors, const Campaign& readings) {
-    double largest = 0.0;
-    for (const auto& setup : readings.setups) {
-      if (setup.tool != kMandrel) continue;
-      Eigen::MatrixXd left(3, static_cast<Eigen::Index>(setup.readings.size()));
-      for (std::size_t row = 0; row < setup.readings.size(); ++row) {
-        const AxisPosition position = setup.readings.commanded_position(row);
-        for (int k = 0; k < 3; ++k)
-          left(k, static_cast<Eigen::Index>(row)) = setup.readings.value[static_cast<std::size_t>(k)][row];
-        left.col(static_cast<Eigen::Index>(row)) -=
-            volumetric_error(errors, position, machine.tools[kMandrel]).value.head<3>();
-      }
-      largest = std::max(largest, (left.colwise() - left.rowwise().mean()).cwiseAbs().maxCoeff());
-    }
-    return largest;
-  };
-  for (auto& setup : campaign.setups) {
-    for (std::size_t row = 0; row < setup.readings.size(); ++row) {
-      const AxisPosition position = setup.readings.commanded_position(row);
-      const auto error = volumetric_error(result, position, machine.tools[setup.tool]).value;
-      for (std::size_t k = 0; k < 3; ++k) setup.readings.value[k][row] = error[static_cast<Eigen::Index>(k)];
-    }
-  }
-  EXPECT_LT(spread(result, campaign), 1e-15);
-  EXPECT_GT(spread(aligned, campaign), 1e-6);
-  adopt_alignment(campaign, aligned);
-  EXPECT_LT(spread(aligned, campaign), 1e-9);
 }
 
 std::string refused_alignment(const FitResult& result, const Alignment& alignment) {

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "volcal/identify/standards/target_positions.h"
+#include "volcal/model/description/recorded_moves.h"
 
 namespace volcal {
 
@@ -41,25 +42,66 @@ std::vector<int> approach_from_order(std::span<const double> positions) {
   return approach;
 }
 
-std::vector<int> axis_approach(const Readings& readings, AxisName axis) {
+namespace {
+
+/// Rows from one move of half a turn to the next: within them the order tells every direction.
+std::vector<std::vector<std::size_t>> stretches(const std::vector<std::size_t>& rows,
+                                                const RecordedMoves& moves) {
+  std::vector<std::vector<std::size_t>> parts;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (k == 0 || moves.either_way(rows[k - 1], rows[k])) parts.emplace_back();
+    parts.back().push_back(rows[k]);
+  }
+  return parts;
+}
+
+/// Positions of a stretch, turns counted on.
+std::vector<double> unrolled(const std::vector<std::size_t>& rows, const std::vector<double>& position,
+                             const RecordedMoves& moves) {
+  std::vector<double> along = {position[rows.front()]};
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    along.push_back(moves.modulo_a_turn() ? along.back() + moves.between(rows[k - 1], rows[k])
+                                          : position[rows[k]]);
+  }
+  return along;
+}
+
+std::vector<int> approach_along(const std::vector<double>& along) {
+  const auto [low, high] = std::ranges::minmax(along);
+  return high - low > kStandingRange ? approach_from_order(along) : std::vector<int>(along.size(), 0);
+}
+
+}  // namespace
+
+std::vector<int> axis_approach(const Machine& machine, const Readings& readings, AxisName axis) {
   const auto& position = readings.position[index_of(axis)];
   const auto& column = readings.direction[index_of(axis)];
   std::vector<int> approach(readings.size(), 0);
   if (position.empty()) return approach;
+  const RecordedMoves moves(machine, readings, axis);
   for (const Pass& pass : passes(readings)) {
-    std::vector<double> along;
-    for (const std::size_t row : pass.rows) along.push_back(position[row]);
-    const auto [low, high] = std::ranges::minmax(along);
-    const bool moves = high - low > kStandingRange;
-    const std::vector<int> from_order =
-        moves ? approach_from_order(along) : std::vector<int>(along.size(), 0);
-    for (std::size_t k = 0; k < pass.rows.size(); ++k) {
-      const std::size_t row = pass.rows[k];
-      const int stated = column.empty() ? 0 : column[row];
-      approach[row] = stated != 0 ? stated : from_order[k];
+    bool after_half_a_turn = false;
+    for (const std::vector<std::size_t>& rows : stretches(pass.rows, moves)) {
+      const std::vector<int> from_order = approach_along(unrolled(rows, position, moves));
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        const int stated = column.empty() ? 0 : column[rows[k]];
+        const bool unknown = after_half_a_turn && k == 0;
+        approach[rows[k]] = stated != 0 ? stated : (unknown ? 0 : from_order[k]);
+      }
+      after_half_a_turn = true;
     }
   }
   return approach;
+}
+
+std::size_t readings_after_half_turns(const Machine& machine, const Readings& readings, AxisName axis) {
+  const RecordedMoves moves(machine, readings, axis);
+  std::size_t count = 0;
+  for (const Pass& pass : passes(readings)) {
+    const std::size_t parts = stretches(pass.rows, moves).size();
+    count += parts - std::min<std::size_t>(parts, 1);
+  }
+  return count;
 }
 
 }  // namespace volcal

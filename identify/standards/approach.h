@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/machine.h"
 
 namespace volcal {
 
@@ -29,7 +30,10 @@ std::vector<Pass> passes(const Readings& readings);
 std::vector<int> approach_from_order(std::span<const double> positions);
 
 /// Approach of an axis at every row: its `dir_` column where that says something, else the order of the
-/// commanded positions within each pass in which it moves. 0 = unknown.
-std::vector<int> axis_approach(const Readings& readings, AxisName axis);
+/// commanded positions within each pass in which it moves. Where an axis without end is recorded within one
+/// turn, it took the shorter way (recorded_moves.h); half a turn has none. 0 = unknown.
+std::vector<int> axis_approach(const Machine& machine, const Readings& readings, AxisName axis);
+/// Readings to which an axis came by half a turn, from either side.
+std::size_t readings_after_half_turns(const Machine& machine, const Readings& readings, AxisName axis);
 
 }  // namespace volcal

@@ -137,7 +137,8 @@ Classifier by_position(const Campaign& campaign, AxisName name, int count) {
 
 Classifier by_direction(const Campaign& campaign, AxisName name) {
   std::vector<std::vector<int>> approach;
-  for (const Setup& setup : campaign.setups) approach.push_back(axis_approach(setup.readings, name));
+  for (const Setup& setup : campaign.setups)
+    approach.push_back(axis_approach(campaign.machine, setup.readings, name));
   const std::string letter{letter_of(name)};
   return {{By::Direction, name},
           {letter + "+", letter + "-", letter + " unknown"},

@@ -3,9 +3,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
+#include <utility>
 
 #include "volcal/identify/standards/approach.h"
+#include "volcal/identify/standards/positioning_notes.h"
 #include "volcal/identify/standards/test_paths.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/instruments/reading_frame.h"
@@ -20,6 +23,7 @@ using Eigen::Vector3d;
 constexpr double kAlongAxis = 0.01;      // rad between the axis of a reading and the rotary axis
 constexpr double kApartOnAxis = 5e-3;    // m between spheres, at least
 constexpr double kSameTestAngle = 1e-4;  // rad
+constexpr double kTestTurn = 2.0 * std::numbers::pi;
 
 const Setup* as_test_of_one_axis(const Setup& setup, std::optional<AxisName>& axis) {
   const std::vector<AxisName> moving = moving_axes(setup);
@@ -51,26 +55,32 @@ double sense_of_reading(const Campaign& campaign, const Setup& setup, AxisName a
   return !turns_body ? 0.0 : body == "table" ? -sense : sense;
 }
 
-std::vector<Finding> positioning_notes(const PositioningFigures& figures, const SetupValues& values) {
-  std::vector<Finding> notes = notes_on_removed(values);
-  if (figures.unknown_direction > 0) {
-    notes.push_back({FindingCode::StandardsApproachUnknown,
-                     {{"readings", static_cast<std::int64_t>(figures.unknown_direction)}}});
-  }
-  if (!figures.positive.repeatability && !figures.negative.repeatability)
-    notes.push_back({FindingCode::StandardsRepeatabilityUndefined});
-  return notes;
-}
-
-PositioningFigures angular_figures(const Setup& setup, AxisName axis, double sense, const SetupValues& values,
-                                   const std::vector<double>& value) {
-  const std::vector<int> approach = axis_approach(setup.readings, axis);
+PositioningFigures angular_figures(const Machine& machine, const Setup& setup, AxisName axis, double sense,
+                                   const SetupValues& values, const std::vector<double>& value) {
+  const std::vector<int> approach = axis_approach(machine, setup.readings, axis);
   std::vector<PositioningReading> readings;
   for (std::size_t row = 0; row < setup.readings.size(); ++row) {
     if (!values.has(row)) continue;
     readings.push_back({setup.readings.position[index_of(axis)][row], sense * value[row], approach[row]});
   }
   return positioning_figures(readings);
+}
+
+bool same_angle_of_turn(double one, double other) {
+  return std::abs(std::remainder(one - other, kTestTurn)) <= kSameTestAngle;
+}
+
+/// Of every row: how often its angle, a turn more or less, was met before.
+std::vector<int> visits_before(const std::vector<double>& angles) {
+  std::vector<int> visits;
+  std::vector<std::pair<double, int>> met;
+  for (const double angle : angles) {
+    const auto known =
+        std::ranges::find_if(met, [&](const auto& each) { return same_angle_of_turn(each.first, angle); });
+    visits.push_back(known == met.end() ? 0 : ++known->second);
+    if (known == met.end()) met.emplace_back(angle, 0);
+  }
+  return visits;
 }
 
 /// Displacements of a sphere while one axis turns, in the directions of the body that carries the axis.
@@ -80,6 +90,7 @@ struct TurnedSphere {
   double turn_sense = 1.0;  ///< of the turning body for a positive command
   double height = 0.0;      ///< of the tool point along the axis, from its centre, m
   std::vector<double> angle;
+  std::vector<int> visit;  ///< of the angle, a turn more or less, in the order of reading
   std::vector<Vector3d> reading_s;
   std::vector<Vector3d> predicted_s;
   std::vector<Finding> notes;
@@ -93,7 +104,8 @@ TurnedSphere turned_sphere(const Campaign& campaign, const Setup& setup, AxisNam
   const Vector3d& tool = campaign.machine.tools[setup.tool].offset;
   const std::vector<Vector3d> reading_w = displacements_w(campaign, setup, values.reading);
   const std::vector<Vector3d> predicted_w = displacements_w(campaign, setup, values.predicted);
-  TurnedSphere sphere{&setup, axis, 1.0, 0.0, {}, {}, {}, notes_on_removed(values)};
+  const std::vector<int> visit = visits_before(setup.readings.position[index_of(axis)]);
+  TurnedSphere sphere{&setup, axis, 1.0, 0.0, {}, {}, {}, {}, notes_on_removed(values)};
   for (std::size_t row = 0; row < setup.readings.size(); ++row) {
     if (!values.has(row)) continue;
     const AxisPosition position = setup.readings.commanded_position(row);
@@ -101,6 +113,7 @@ TurnedSphere turned_sphere(const Campaign& campaign, const Setup& setup, AxisNam
     sphere.turn_sense = lever.workpiece_side ? -1.0 : 1.0;
     sphere.height = lever.arm_s[direction_of(axis)];
     sphere.angle.push_back(position[index_of(axis)]);
+    sphere.visit.push_back(visit[row]);
     sphere.reading_s.emplace_back(lever.rotation_ws.transpose() * reading_w[row]);
     sphere.predicted_s.emplace_back(lever.rotation_ws.transpose() * predicted_w[row]);
   }
@@ -147,34 +160,24 @@ void add_motions_of_sphere(const TurnedSphere& sphere, std::vector<ErrorMotionTe
   add(ErrorMotion::Axial, along, [along](double, const Vector3d& value) { return value[along]; });
 }
 
-/// Mean of the values read at an angle.
-std::optional<Vector3d> mean_at(const TurnedSphere& sphere, const std::vector<Vector3d>& values,
-                                double angle) {
-  Vector3d sum = Vector3d::Zero();
-  int count = 0;
+std::optional<std::size_t> same_visit(const TurnedSphere& sphere, double angle, int visit) {
   for (std::size_t k = 0; k < sphere.angle.size(); ++k) {
-    if (std::abs(sphere.angle[k] - angle) > kSameTestAngle) continue;
-    sum += values[k];
-    ++count;
+    if (sphere.visit[k] == visit && same_angle_of_turn(sphere.angle[k], angle)) return k;
   }
-  if (count == 0) return std::nullopt;
-  return Vector3d(sum / count);
+  return std::nullopt;
 }
 
-/// Rotation across the axis that moves two spheres differently: (h x (d2 - d1)) / h^2, h along the axis.
+/// Rotation across the axis that moves two spheres differently: (h x (d2 - d1)) / h^2, h along the axis. Of
+/// every visit of an angle at one sphere and the same visit at the other: turns may differ.
 std::vector<RotationReading> tilt_plot(const TurnedSphere& low, const TurnedSphere& high, int about,
                                        std::vector<Vector3d> TurnedSphere::*values) {
   const Vector3d apart = Vector3d::Unit(direction_of(low.axis)) * (high.height - low.height);
   std::vector<RotationReading> plot;
-  std::vector<double> met;
-  for (const double angle : low.angle) {
-    const bool again =
-        std::ranges::any_of(met, [&](double known) { return std::abs(known - angle) <= kSameTestAngle; });
-    if (again) continue;
-    met.push_back(angle);
-    const auto first = mean_at(low, low.*values, angle), second = mean_at(high, high.*values, angle);
-    if (!first || !second) continue;
-    plot.push_back({angle, (apart.cross(*second - *first) / apart.squaredNorm())[about]});
+  for (std::size_t k = 0; k < low.angle.size(); ++k) {
+    const std::optional<std::size_t> same = same_visit(high, low.angle[k], low.visit[k]);
+    if (!same) continue;
+    const Vector3d between = (high.*values)[*same] - (low.*values)[k];
+    plot.push_back({low.angle[k], (apart.cross(between) / apart.squaredNorm())[about]});
   }
   return plot;
 }
@@ -216,22 +219,33 @@ std::vector<Vector3d> displacements_w(const Campaign& campaign, const Setup& set
 }
 
 std::vector<RotaryPositioningTest> rotary_positioning_tests(const Campaign& campaign,
-                                                            std::span<const SetupValues> values) {
+                                                            std::span<const SetupValues> values,
+                                                            std::vector<Finding>& not_recognised) {
   std::vector<RotaryPositioningTest> tests;
   for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
     const Setup& setup = campaign.setups[i];
-    std::optional<AxisName> axis;
-    if (traits_of(setup).line_reading != LineReading::Rotation || !as_test_of_one_axis(setup, axis)) continue;
-    const double sense = sense_of_reading(campaign, setup, *axis);
-    if (sense == 0.0) continue;
+    if (traits_of(setup).line_reading != LineReading::Rotation) continue;
+    const std::vector<AxisName> moving = moving_axes(setup);
+    if (std::ranges::none_of(moving, is_rotary)) continue;  // angles of a linear axis have no such figures
+    if (moving.size() > 1) {
+      not_recognised.push_back({FindingCode::NoTestSeveralAxesMove, {{"setup", setup.name}}});
+      continue;
+    }
+    const AxisName axis = moving.front();
+    const double sense = sense_of_reading(campaign, setup, axis);
+    if (sense == 0.0) {
+      not_recognised.push_back({FindingCode::NoTestAngleNotRead,
+                                {{"setup", setup.name}, {"axis", std::string(1, letter_of(axis))}}});
+      continue;
+    }
     const auto figures = [&](const std::vector<std::vector<double>>& value) {
-      return angular_figures(setup, *axis, sense, values[i], value[0]);
+      return angular_figures(campaign.machine, setup, axis, sense, values[i], value[0]);
     };
     PositioningFigures readings = figures(values[i].reading);
-    std::vector<Finding> notes = positioning_notes(readings, values[i]);
+    std::vector<Finding> notes = notes_on_positioning(readings, values[i], "urad");
     tests.push_back({setup.name,
-                     *axis,
-                     place_of_other_axes(campaign, setup, *axis),
+                     axis,
+                     place_of_other_axes(campaign, setup, axis),
                      {std::move(readings), figures(values[i].predicted)},
                      std::move(notes)});
   }

@@ -5,7 +5,7 @@
 /// Angular positioning (ISO 230-2): an instrument that reads a rotation about the axis, nothing else moving.
 /// Error motions (ISO 230-7): an instrument that reads three displacements of a sphere (columns dx, dy, dz),
 /// one rotary axis turning alone; two such setups whose spheres stand at different heights on the axis give
-/// its tilt. Directions are those of the body that carries the axis.
+/// its tilt, from the same visit of an angle at both. Directions are those of the body that carries the axis.
 
 #include <span>
 #include <vector>
@@ -15,9 +15,11 @@
 
 namespace volcal {
 
-/// `values`: one entry per setup.
+/// `values`: one entry per setup. Setups that read angles while a rotary axis moves and are no test of it are
+/// added to `not_recognised`.
 std::vector<RotaryPositioningTest> rotary_positioning_tests(const Campaign& campaign,
-                                                            std::span<const SetupValues> values);
+                                                            std::span<const SetupValues> values,
+                                                            std::vector<Finding>& not_recognised);
 std::vector<ErrorMotionTest> error_motion_tests(const Campaign& campaign,
                                                 std::span<const SetupValues> values);
 

@@ -10,6 +10,7 @@
 
 #include "volcal/identify/standards/approach.h"
 #include "volcal/identify/standards/drift_tests.h"
+#include "volcal/identify/standards/positioning_notes.h"
 #include "volcal/identify/standards/rotary_tests.h"
 #include "volcal/identify/standards/setup_values.h"
 #include "volcal/identify/standards/target_positions.h"
@@ -124,33 +125,30 @@ class LineEvaluation {
   bool own_zero_ = false;
 };
 
+/// Whether lines met a direction's targets and none of its figures compares them.
+bool has_targets_of_own(const PositioningFigures& figures, ApproachStatistics PositioningTarget::*approach,
+                        const UnidirectionalFigures& of_direction) {
+  return !of_direction.systematic && std::ranges::any_of(figures.targets, [&](const auto& target) {
+    return (target.*approach).count > 0;
+  });
+}
+
+Finding lines_own_zero(const PositioningFigures& figures) {
+  std::vector<std::string> directions;
+  if (has_targets_of_own(figures, &PositioningTarget::positive, figures.positive))
+    directions.emplace_back("+");
+  if (has_targets_of_own(figures, &PositioningTarget::negative, figures.negative))
+    directions.emplace_back("-");
+  const bool shared = figures.positive.systematic || figures.negative.systematic;
+  Finding note{FindingCode::StandardsLinesOwnZero, {{"targets_of_own", !shared}}};
+  if (shared && !directions.empty()) note.data["direction"] = directions.front();
+  return note;
+}
+
 std::vector<Finding> line_notes(const LineEvaluation& evaluation, const PositioningFigures& figures,
                                 const SetupValues& values) {
-  std::vector<Finding> notes = notes_on_removed(values);
-  if (evaluation.every_line_has_its_own_zero()) {
-    const bool shared = figures.positive.systematic || figures.negative.systematic;
-    notes.push_back({FindingCode::StandardsLinesOwnZero, {{"targets_of_own", !shared}}});
-  }
-  if (figures.target_spread > kSamePosition) {
-    notes.push_back({FindingCode::StandardsTargetsSpread,
-                     {{"spread", FindingNumber{figures.target_spread, "um", kMetrePerMicrometre}}}});
-  }
-  if (figures.unknown_direction > 0) {
-    notes.push_back({FindingCode::StandardsApproachUnknown,
-                     {{"readings", static_cast<std::int64_t>(figures.unknown_direction)}}});
-  }
-  const auto one_sided =
-      std::count_if(figures.targets.begin(), figures.targets.end(),
-                    [](const PositioningTarget& target) { return !target.bidirectional(); });
-  if (one_sided > 0 && figures.reversal) {
-    notes.push_back({FindingCode::StandardsTargetsOneSided,
-                     {{"targets", static_cast<std::int64_t>(one_sided)},
-                      {"of", static_cast<std::int64_t>(figures.targets.size())}}});
-  }
-  const bool repeated = figures.positive.repeatability || figures.negative.repeatability;
-  if (!repeated && !figures.targets.empty()) {
-    notes.push_back({FindingCode::StandardsRepeatabilityUndefined});
-  }
+  std::vector<Finding> notes = notes_on_positioning(figures, values, "um");
+  if (evaluation.every_line_has_its_own_zero()) notes.insert(notes.begin(), lines_own_zero(figures));
   return notes;
 }
 
@@ -312,7 +310,7 @@ StandardFigures standard_figures(const Campaign& campaign, std::span<const Resid
     if (traits.has_bar) evaluate_ball_bar(campaign, i, values[i], result);
     if (traits.reads_error_vectors) evaluate_points(campaign, setup, values[i], result);
   }
-  result.rotary_lines = rotary_positioning_tests(campaign, values);
+  result.rotary_lines = rotary_positioning_tests(campaign, values, result.not_recognised);
   result.error_motions = error_motion_tests(campaign, values);
   result.drifts = drift_tests(campaign, values);
   summarise_diagonals(result);

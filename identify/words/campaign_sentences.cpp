@@ -153,6 +153,16 @@ std::string directions_derived(const Finding& finding) {
       join_names(finding.texts("columns")), join_names(finding.texts("setups")));
 }
 
+std::string half_turns(const Finding& finding) {
+  const std::int64_t readings = finding.count("readings");
+  return fmt::format(
+      "half a turn of {} goes either way: the direction of approach of {} {} after it in {} is not known; "
+      "add "
+      "the column {}",
+      finding.text("axis"), readings, readings == 1 ? "reading" : "readings",
+      join_names(finding.texts("setups")), finding.text("column"));
+}
+
 std::string centre_assumed(const Finding& finding) {
   const std::vector<std::string>& axes = finding.texts("axes");
   const bool several = axes.size() > 1;
@@ -185,6 +195,7 @@ std::span<const SentenceMaker> campaign_sentences() {
       {FindingCode::ReadingsMisread, misread},
       {FindingCode::ReadingsDuplicated, duplicated},
       {FindingCode::ReadingsDirectionsDerived, directions_derived},
+      {FindingCode::ReadingsHalfTurns, half_turns},
       {FindingCode::MachineCentreAssumed, centre_assumed},
       {FindingCode::ReadingsLeftOut, left_out},
   });

@@ -16,14 +16,18 @@ std::string removed_readings_used(const Finding& finding) {
 }
 
 std::string lines_own_zero(const Finding& finding) {
-  return finding.flag("targets_of_own")
-             ? "every line has its own zero and targets of its own: no figure compares them"
-             : "every line has its own zero: reversal and bidirectional figures are not seen";
+  if (finding.flag("targets_of_own"))
+    return "every line has its own zero and targets of its own: no figure compares them";
+  const std::string both = "every line has its own zero: reversal and bidirectional figures are not seen";
+  if (!finding.has("direction")) return both;
+  return fmt::format("{}; the lines towards {} do not share their targets: no figure of that direction", both,
+                     finding.text("direction"));
 }
 
 std::string targets_spread(const Finding& finding) {
-  return fmt::format("recorded positions within {:.1f} um were taken as one target",
-                     finding.number("spread").in_unit());
+  const FindingNumber& spread = finding.number("spread");
+  return fmt::format("recorded positions within {:.1f} {} were taken as one target", spread.in_unit(),
+                     spread.unit);
 }
 
 std::string approach_unknown(const Finding& finding) {
@@ -67,6 +71,15 @@ std::string rotary_axis_moves(const Finding& finding) {
 
 std::string no_axis_moves(const Finding& finding) { return place_of_test(finding) + "no axis moves"; }
 
+std::string several_axes_move(const Finding& finding) {
+  return place_of_test(finding) + "more than one axis moves";
+}
+
+std::string angle_not_read(const Finding& finding) {
+  return fmt::format("{}{} turns, but not about the axis or with the body that the readings show",
+                     place_of_test(finding), finding.text("axis"));
+}
+
 std::string not_two_axes_move(const Finding& finding) {
   return place_of_test(finding) + "the number of axes that move is not two";
 }
@@ -104,6 +117,8 @@ std::span<const SentenceMaker> standards_sentences() {
       {FindingCode::NoTestWithoutReadings, without_readings},
       {FindingCode::NoTestRotaryAxisMoves, rotary_axis_moves},
       {FindingCode::NoTestNoAxisMoves, no_axis_moves},
+      {FindingCode::NoTestSeveralAxesMove, several_axes_move},
+      {FindingCode::NoTestAngleNotRead, angle_not_read},
       {FindingCode::NoTestNotTwoAxesMove, not_two_axes_move},
       {FindingCode::NoTestNoCircle, no_circle},
       {FindingCode::NoTestNoStraightLine, no_straight_line},

@@ -118,6 +118,10 @@ constexpr auto kFindingCodes = [] {
       {CompensationsDiffer, "compensation.active-differ", Severity::Warning},
       {CompensationsUnstated, "compensation.active-unstated", Severity::Warning},
       {CompensationsInTables, "compensation.active-in-tables", Severity::Warning},
+      {NoTestSeveralAxesMove, "standards.no-test.several-axes-move", Severity::Note},
+      {NoTestAngleNotRead, "standards.no-test.angle-not-read", Severity::Note},
+      {ReadingsHalfTurns, "readings.half-turns", Severity::Note},
+      {RotaryTablesMayWorsen, "compensation.rotary-may-worsen", Severity::Warning},
   });
 }();
 static_assert(kFindingCodes.size() == static_cast<std::size_t>(FindingCode::End), "every code has one name");

@@ -114,6 +114,10 @@ enum class FindingCode : std::uint8_t {
   CompensationsDiffer,
   CompensationsUnstated,
   CompensationsInTables,
+  NoTestSeveralAxesMove,
+  NoTestAngleNotRead,
+  ReadingsHalfTurns,
+  RotaryTablesMayWorsen,
   End,  ///< none: how many there are
 };
 

@@ -71,7 +71,7 @@ std::optional<Eigen::VectorXd> recorded_variable(const SetupView& view, const Va
     case Kind::Direction:
       return of_column(readings.direction[index_of(variable.axis)], variable);
     case Kind::TravelSinceTurning:
-      return scaled(finite_travel_since_turning(view.setup, variable.axis), unit);
+      return scaled(finite_travel_since_turning(view.campaign.machine, view.setup, variable.axis), unit);
     case Kind::Time:
       if (readings.time.empty()) return std::nullopt;
       return times(view).array() - clock_start(view);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "volcal/model/description/recorded_moves.h"
+
 namespace volcal {
 namespace {
 
@@ -18,24 +20,26 @@ std::vector<std::size_t> order_of_reading(const Readings& readings) {
 
 }  // namespace
 
-std::vector<double> travel_since_turning(const Setup& setup, AxisName axis) {
+std::vector<double> travel_since_turning(const Machine& machine, const Setup& setup, AxisName axis) {
   const Readings& readings = setup.readings;
   const auto& direction = readings.direction[index_of(axis)];
-  const auto& position = readings.position[index_of(axis)];
   std::vector<double> travelled(readings.size(), std::numeric_limits<double>::infinity());
   if (direction.empty()) return travelled;
+  const RecordedMoves moves(machine, readings, axis);
   const std::vector<std::size_t> order = order_of_reading(readings);
   for (std::size_t i = 1; i < order.size(); ++i) {
     const std::size_t now = order[i], before = order[i - 1];
-    const double step = direction[now] * (position[now] - position[before]);
+    const double move = moves.between(before, now);
+    const double step =
+        moves.either_way(before, now) ? std::abs(direction[now] * move) : direction[now] * move;
     const bool turned = step < 0.0 || direction[now] != direction[before];
     travelled[now] = turned ? std::max(step, 0.0) : travelled[before] + step;
   }
   return travelled;
 }
 
-std::vector<double> finite_travel_since_turning(const Setup& setup, AxisName axis) {
-  std::vector<double> travelled = travel_since_turning(setup, axis);
+std::vector<double> finite_travel_since_turning(const Machine& machine, const Setup& setup, AxisName axis) {
+  std::vector<double> travelled = travel_since_turning(machine, setup, axis);
   double farthest = 0.0;
   for (const double each : travelled) farthest = std::isinf(each) ? farthest : std::max(farthest, each);
   for (double& each : travelled) each = std::min(each, farthest);

@@ -57,7 +57,7 @@ std::vector<ScanVariable> travel_since_turning(const LinearModel& model) {
   for (const Axis& axis : campaign.machine.axes) {
     std::vector<std::vector<double>> travelled;
     for (const Setup& setup : campaign.setups)
-      travelled.push_back(finite_travel_since_turning(setup, axis.name));
+      travelled.push_back(finite_travel_since_turning(campaign.machine, setup, axis.name));
     Eigen::VectorXd value(static_cast<Eigen::Index>(model.size()));
     for (std::size_t i = 0; i < model.size(); ++i) {
       const auto& place = model.observations()[i];

@@ -44,7 +44,8 @@ std::vector<std::vector<std::int8_t>> directions_from_order(const Campaign& camp
   for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
     const Readings& readings = campaign.setups[i].readings;
     if (!derive[i] || !readings.direction[index_of(axis)].empty()) continue;
-    for (const int sign : axis_approach(readings, axis)) derived[i].push_back(static_cast<std::int8_t>(sign));
+    for (const int sign : axis_approach(campaign.machine, readings, axis))
+      derived[i].push_back(static_cast<std::int8_t>(sign));
   }
   return derived;
 }
@@ -89,7 +90,32 @@ void note_doubtful_readings(Campaign& campaign) {
   }
 }
 
+namespace {
+
+void note_half_turns(const std::vector<bool>& derive, Campaign& campaign) {
+  for (const Axis& axis : campaign.machine.axes) {
+    std::size_t readings = 0;
+    std::vector<std::string> setups;
+    for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
+      const Readings& recorded = campaign.setups[i].readings;
+      if (!derive[i] || !recorded.direction[index_of(axis.name)].empty()) continue;
+      const std::size_t of_setup = readings_after_half_turns(campaign.machine, recorded, axis.name);
+      if (of_setup > 0) setups.push_back(printable(campaign.setups[i].name));
+      readings += of_setup;
+    }
+    if (readings == 0) continue;
+    campaign.notes.push_back({FindingCode::ReadingsHalfTurns,
+                              {{"readings", static_cast<std::int64_t>(readings)},
+                               {"axis", std::string(1, letter_of(axis.name))},
+                               {"column", direction_column(axis.name)},
+                               {"setups", setups}}});
+  }
+}
+
+}  // namespace
+
 void derive_directions(const std::vector<bool>& derive, Campaign& campaign) {
+  note_half_turns(derive, campaign);
   std::vector<std::string> columns;
   std::set<std::size_t> setups;
   for (const Axis& axis : campaign.machine.axes) {

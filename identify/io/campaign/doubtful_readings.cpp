@@ -14,6 +14,7 @@
 #include "volcal/identify/numeric/content_hash.h"
 #include "volcal/identify/standards/approach.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/recorded_moves.h"
 
 namespace volcal {
 namespace {
@@ -120,17 +121,27 @@ bool are_against(std::size_t against, std::size_t moves) {
   return some >= kShareAgainstOrder * all || some - 0.5 * all > kBeyondChance * 0.5 * std::sqrt(all);
 }
 
+/// Recorded modulo a turn, half a turn and more may have been gone round the other way.
+bool turned_either_way(const RecordedMoves& moves, double difference, std::size_t before, std::size_t now) {
+  return moves.modulo_a_turn() &&
+         (moves.either_way(before, now) || (moves.between(before, now) > 0.0) != (difference > 0.0));
+}
+
 /// Stated directions against the moves between neighbouring readings of a pass.
-std::optional<Finding> against_order(const Readings& readings, AxisName axis) {
+std::optional<Finding> against_order(const Machine& machine, const Readings& readings, AxisName axis) {
   const auto& stated = readings.direction[index_of(axis)];
   const auto& position = readings.position[index_of(axis)];
   if (stated.empty() || position.empty()) return std::nullopt;
+  const RecordedMoves recorded(machine, readings, axis);
   std::size_t moves = 0, against = 0;
   for (const Pass& pass : passes(readings)) {
     for (std::size_t k = 1; k < pass.rows.size(); ++k) {
-      const double move = position[pass.rows[k]] - position[pass.rows[k - 1]];
-      const int direction = stated[pass.rows[k]];
-      if (direction == 0 || std::abs(move) <= kStandingRange) continue;
+      const std::size_t now = pass.rows[k], before = pass.rows[k - 1];
+      const double move = position[now] - position[before];
+      const int direction = stated[now];
+      if (direction == 0 || std::abs(move) <= kStandingRange ||
+          turned_either_way(recorded, move, before, now))
+        continue;
       ++moves;
       against += (move > 0.0) == (direction > 0) ? 0U : 1U;
     }
@@ -190,7 +201,7 @@ std::vector<Finding> doubts_of(const Setup& setup, const Machine& machine) {
     if (doubt) doubts.push_back(*std::move(doubt));
   };
   add(repeated_rows(setup));
-  for (const Axis& axis : machine.axes) add(against_order(setup.readings, axis.name));
+  for (const Axis& axis : machine.axes) add(against_order(machine, setup.readings, axis.name));
   add(doubtful_time(setup.readings));
   add(doubtful_angles(setup, machine));
   return doubts;

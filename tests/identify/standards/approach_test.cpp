@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
+#include "tests/support/machines.h"
+
 namespace volcal {
 namespace {
 
@@ -24,6 +28,12 @@ TEST(ApproachFromOrder, RestsAtTheEndKeepTheLastMove) {
   EXPECT_TRUE(approach_from_order({}).empty());
 }
 
+Machine machine() {
+  Machine machine = testing_support::machine_of("w C' b X Y Z A t");
+  machine.axes.back().endless = false;
+  return machine;
+}
+
 Readings two_passes() {
   Readings readings;
   readings.position[0] = {0.0, 0.1, 0.1, 0.0};
@@ -33,17 +43,55 @@ Readings two_passes() {
 }
 
 TEST(AxisApproach, OrderCountsWithinEachPass) {
-  EXPECT_THAT(axis_approach(two_passes(), AxisName::X), ElementsAre(1, 1, -1, -1));
+  EXPECT_THAT(axis_approach(machine(), two_passes(), AxisName::X), ElementsAre(1, 1, -1, -1));
 }
 
 TEST(AxisApproach, ColumnGoesBeforeOrderWhereItSaysSomething) {
   Readings readings = two_passes();
   readings.direction[0] = {-1, 0, 0, -1};
-  EXPECT_THAT(axis_approach(readings, AxisName::X), ElementsAre(-1, 1, -1, -1));
+  EXPECT_THAT(axis_approach(machine(), readings, AxisName::X), ElementsAre(-1, 1, -1, -1));
 }
 
 TEST(AxisApproach, AxisThatTheMachineLacksIsUnknown) {
-  EXPECT_THAT(axis_approach(two_passes(), AxisName::Y), ElementsAre(0, 0, 0, 0));
+  EXPECT_THAT(axis_approach(machine(), two_passes(), AxisName::Y), ElementsAre(0, 0, 0, 0));
+}
+
+/// One pass in degrees.
+Readings turned(AxisName axis, const std::vector<double>& degrees) {
+  Readings readings;
+  for (const double angle : degrees)
+    readings.position[index_of(axis)].push_back(angle * std::numbers::pi / 180.0);
+  readings.source_line.assign(degrees.size(), 2);
+  return readings;
+}
+
+std::vector<int> approach_of(AxisName axis, const std::vector<double>& degrees) {
+  return axis_approach(machine(), turned(axis, degrees), axis);
+}
+
+/// There over 0 and back, as a control records it that counts within a turn.
+TEST(AxisApproach, GoesOnOverTheEndOfATurn) {
+  EXPECT_THAT(approach_of(AxisName::C, {240, 300, 0, 60, 60, 0, 300, 240}),
+              ElementsAre(1, 1, 1, 1, -1, -1, -1, -1));
+  EXPECT_THAT(approach_of(AxisName::C, {120, 170, -140, -90, -140, 170}), ElementsAre(1, 1, 1, 1, -1, -1));
+}
+
+TEST(AxisApproach, StandsAtTheEndOfATurnWhatEverScatterIsRecorded) {
+  EXPECT_THAT(approach_of(AxisName::C, {0.0001, 359.9999, 0.0001}), ElementsAre(0, 0, 0));
+}
+
+/// Turns that are counted on, and axes with ends, move as recorded.
+TEST(AxisApproach, IsAsRecordedWhereTurnsAreCounted) {
+  EXPECT_THAT(approach_of(AxisName::C, {0, 200, 400, 600, 400, 200}), ElementsAre(1, 1, 1, 1, -1, -1));
+  EXPECT_THAT(approach_of(AxisName::A, {-170, 170, -170}), ElementsAre(1, 1, -1));
+}
+
+TEST(AxisApproach, OfHalfATurnIsUnknown) {
+  EXPECT_THAT(approach_of(AxisName::C, {0, 60, 240, 300, 240}), ElementsAre(1, 1, 0, 1, -1));
+  EXPECT_THAT(approach_of(AxisName::C, {0, 180, 0}), ElementsAre(0, 0, 0));
+  EXPECT_EQ(readings_after_half_turns(machine(), turned(AxisName::C, {0, 60, 240, 300, 120}), AxisName::C),
+            2U);
+  EXPECT_EQ(readings_after_half_turns(machine(), turned(AxisName::A, {0, 60, 240}), AxisName::A), 0U);
 }
 
 TEST(Passes, KeepTheOrderOfFirstAppearance) {

@@ -11,11 +11,14 @@
 
 #include "tests/support/machines.h"
 #include "tests/support/residual_records.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal {
 namespace {
 
 using Eigen::Vector3d;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 constexpr double kThirty = std::numbers::pi / 6.0;
@@ -127,6 +130,40 @@ TEST(AxisOfRotation, TiltByTwoSpheres) {
   EXPECT_TRUE(tests[9].is_angle());
 }
 
+/// Three turns recorded within one: at the upper sphere, 100 mm higher, they differ by -0.5, 0, 0.5 um in X,
+/// at the lower one by 0.2, 0, -0.2: tilts about Y differ by 10 (1.0 + 0.4) = 14 urad between the turns,
+/// which adds to 20 urad of the mean. A reading that is missing makes no other pairs.
+TEST(AxisOfRotation, TurnsOfTwoSpheresArePaired) {
+  for (const bool missing : {false, true}) {
+    Campaign campaign = table_campaign();
+    const auto turns = [](const std::string& name, double height, double apart, double wave) {
+      volcal::Setup setup = sphere_on_the_axis(name, height, [&](double q) {
+        return Vector3d(std::cos(3.0 * q) + wave * std::cos(2.0 * q) - apart, 0, 0);
+      });
+      for (const double shift : {0.0, apart}) {
+        const volcal::Setup turn = sphere_on_the_axis(name, height, [&](double q) {
+          return Vector3d(std::cos(3.0 * q) + wave * std::cos(2.0 * q) + shift, 0, 0);
+        });
+        for (std::size_t row = 0; row < turn.readings.size(); ++row)
+          read(setup, turn.readings.commanded_position(row), {turn.readings.value[0][row] * 1e6, 0.0, 0.0});
+      }
+      return setup;
+    };
+    campaign.setups = {turns("low", 0.05, -0.2, 0.0), turns("high", 0.15, 0.5, 1.0)};
+    std::vector<ResidualRecord> records = testing::records_times(campaign, 0.5);
+    if (missing) records.erase(records.begin(), records.begin() + 3);
+    const auto tests = standard_figures(campaign, records).error_motions;
+    ASSERT_EQ(tests.size(), 10u);
+    const ErrorMotionFigures& tilt = tests[9].figures.readings;
+    EXPECT_EQ(tilt.angles, 12);
+    EXPECT_NEAR(micro(tilt.asynchronous), 14.0, 1e-6);
+    if (!missing) {
+      EXPECT_NEAR(micro(tilt.synchronous), 20.0, 1e-6);
+      EXPECT_NEAR(micro(tilt.total), 34.0, 1e-6);
+    }
+  }
+}
+
 TEST(AxisOfRotation, IsNoTestWhereLinearAxesFollow) {
   Campaign campaign = table_campaign();
   volcal::Setup setup = sphere_on_the_axis("R", 0.0, [](double) { return Vector3d::Zero().eval(); });
@@ -190,9 +227,46 @@ TEST(RotaryPositioning, IsNoTestOfAnotherRotation) {
   Campaign campaign = table_campaign();
   campaign.setups = {angles(Vector3d::UnitX(), 1.0)};
   EXPECT_THAT(figures_of(campaign).rotary_lines, IsEmpty());
+  EXPECT_THAT(sentences(figures_of(campaign).not_recognised),
+              ElementsAre(HasSubstr("angles: C turns, but not")));
   campaign.setups = {angles(Vector3d::UnitZ(), 1.0)};
   campaign.setups[0].options.set("body", std::string("tool"));
   EXPECT_THAT(figures_of(campaign).rotary_lines, IsEmpty()) << "the tool does not turn";
+  EXPECT_THAT(sentences(figures_of(campaign).not_recognised),
+              ElementsAre(HasSubstr("angles: C turns, but not")));
+  campaign.setups[0].readings.position[0][2] = 0.1;
+  EXPECT_THAT(sentences(figures_of(campaign).not_recognised),
+              ElementsAre("angles: more than one axis moves"));
+  for (std::vector<double>& position : campaign.setups[0].readings.position)
+    position.assign(position.size(), 0.0);
+  campaign.setups[0].readings.position[0][2] = 0.1;
+  EXPECT_THAT(figures_of(campaign).not_recognised, IsEmpty()) << "angles of a linear axis";
+}
+
+/// The targets 60, 0 and 300 deg, recorded within a turn, with the deviations of angles(): 300 deg comes
+/// before 0.
+TEST(RotaryPositioning, GoesOnOverTheEndOfATurn) {
+  Campaign campaign = table_campaign();
+  volcal::Setup setup = angles(Vector3d::UnitZ(), 1.0);
+  for (double& at : setup.readings.position[index_of(AxisName::C)])
+    at = 2.0 * kThirty * std::fmod(std::round(at / 0.1) + 4.0, 6.0);
+  campaign.setups = {setup};
+  expect_hand_figures(campaign);
+}
+
+TEST(RotaryPositioning, SaysWhatItsFiguresRestOn) {
+  Campaign campaign = table_campaign();
+  campaign.setups = {angles(Vector3d::UnitZ(), 1.0)};
+  EXPECT_THAT(figures_of(campaign).rotary_lines[0].notes, IsEmpty());
+  Readings& readings = campaign.setups[0].readings;
+  readings.position[index_of(AxisName::C)][0] += 3e-6;
+  EXPECT_THAT(sentences(figures_of(campaign).rotary_lines[0].notes),
+              ElementsAre("recorded positions within 3.0 urad were taken as one target"));
+  readings.position[index_of(AxisName::C)][0] -= 3e-6;
+  readings.direction[index_of(AxisName::C)].assign(readings.size(), 1);
+  for (const std::size_t row : {3U, 9U}) readings.direction[index_of(AxisName::C)][row] = -1;
+  EXPECT_THAT(sentences(figures_of(campaign).rotary_lines[0].notes),
+              ElementsAre("2 of 3 targets were met from one direction only"));
 }
 
 /// At rest for two hours: X 0, 2, 6 um; 100 mm lower 0, 1, 1 um, so that the tilt about Y is 0, 10, 50 urad.

@@ -166,6 +166,25 @@ TEST(StandardFigures, LinesWithTheirOwnZeroHaveNoReversal) {
   EXPECT_FALSE(line.reversal || line.mean_reversal || line.systematic || line.repeatability || line.accuracy);
   EXPECT_NEAR(*line.positive.systematic, 8e-6, 1e-12);
   EXPECT_THAT(sentences(figures.lines[0].notes), ::testing::Contains(HasSubstr("own zero")));
+  EXPECT_THAT(sentences(figures.lines[0].notes), ::testing::Not(::testing::Contains(HasSubstr("towards"))));
+}
+
+/// A line towards - that lacks a target compares with none of its direction; those towards + stay.
+TEST(StandardFigures, LinesWithTheirOwnZeroLoseTheDirectionWhoseTargetsDiffer) {
+  Campaign campaign = empty_campaign();
+  auto points = x_line(0.5, 0.0, +1);
+  points.pop_back();
+  volcal::Setup& setup = add_setup(campaign, "line_X", "displacement", points);
+  setup.options.set("direction", Vector3d(1, 0, 0));
+  setup.options.set("offset_per", std::string("line"));
+  const auto figures =
+      standard_figures(campaign, records_of(campaign, [](auto, auto, double reading) { return reading; }));
+  ASSERT_EQ(figures.lines.size(), 1U);
+  const PositioningFigures& line = figures.lines[0].figures.readings;
+  EXPECT_TRUE(line.positive.systematic);
+  EXPECT_FALSE(line.negative.systematic || line.mean_bidirectional);
+  EXPECT_THAT(sentences(figures.lines[0].notes),
+              ::testing::Contains(HasSubstr("the lines towards - do not share their targets")));
 }
 
 /// X falls by 0.6 and Y rises by 0.8 per metre: a face diagonal of 0.5 m, named by its first pass. Deviations

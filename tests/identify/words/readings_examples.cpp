@@ -98,6 +98,11 @@ std::vector<WordedFinding> examples_of_readings() {
        "directions of approach that the files do not record (dir_x, dir_y in X) follow from the order of the "
        "readings along each line; if they do not stand in the order in which they were measured, set "
        "directions = \"as-recorded\""},
+      {{FindingCode::ReadingsHalfTurns,
+        {{"readings", std::int64_t{4}}, {"axis", "C"}, {"column", "dir_c"}, {"setups", Texts{"R"}}}},
+       "half a turn of C goes either way: the direction of approach of 4 readings after it in R is not "
+       "known; "
+       "add the column dir_c"},
       {{FindingCode::MachineCentreAssumed, {{"axes", Texts{"C"}}}},
        "the machine file does not say where the line of C is: it is taken to pass through the machine's "
        "origin; state a point of it, centre_mm below [axes.C]"},

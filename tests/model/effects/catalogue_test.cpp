@@ -358,7 +358,7 @@ TEST_F(Catalogue, TravelCountsFromWhereTheAxisTurned) {
     readings.position[0][row] = position[row];
     readings.direction[0][row] = static_cast<std::int8_t>(direction[row]);
   }
-  const std::vector<double> found = travel_since_turning(setup, AxisName::X);
+  const std::vector<double> found = travel_since_turning(campaign_.machine, setup, AxisName::X);
   for (std::size_t row = 0; row < 10; ++row) {
     if (std::isinf(travelled[row])) {
       EXPECT_TRUE(std::isinf(found[row])) << row;

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "tests/support/effect_campaign.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/effects/travel_since_turning.h"
 
 namespace volcal {
 namespace {
@@ -45,6 +47,23 @@ Eigen::MatrixXd drivers_of(const Campaign& campaign, const EffectSpec& spec) {
 
 EffectSpec worm(double period_deg) {
   return effect_spec("worm-error", {{"symbol", std::string("ECC")}, {"period", period_deg * kDegree}});
+}
+
+/// Recorded within a turn: back over 0 to 350 deg, on to 60, back again to 330 and by half a turn to 150.
+TEST(TravelSinceTurning, GoesOnOverTheEndOfATurn) {
+  Campaign campaign = turned_table({40.0, 350.0, 0.0, 60.0, 30.0, 330.0, 150.0});
+  Readings& readings = campaign.setups[0].readings;
+  readings.direction[index_of(AxisName::C)] = {-1, -1, 1, 1, -1, -1, -1};
+  const double unknown = std::numeric_limits<double>::infinity();
+  const double travelled[] = {unknown, unknown, 10.0, 70.0, 30.0, 90.0, 270.0};
+  const std::vector<double> found = travel_since_turning(campaign.machine, campaign.setups[0], AxisName::C);
+  for (std::size_t row = 0; row < 7; ++row) {
+    if (std::isinf(travelled[row])) {
+      EXPECT_TRUE(std::isinf(found[row])) << row;
+    } else {
+      EXPECT_NEAR(found[row], travelled[row] * kDegree, 1e-12) << row;
+    }
+  }
 }
 
 /// Period 4 degrees: a whole wave at 4, a quarter at 1, half at 2.

@@ -18,7 +18,7 @@ constexpr double kLongestLength = 300e-3;
 Eigen::VectorXd fading_half(const SetupView& view, AxisName axis, double length) {
   Eigen::VectorXd half = 0.5 * directions(view, axis);
   if (!view.is_path) return Eigen::VectorXd::Zero(half.size());
-  const std::vector<double> travelled = travel_since_turning(view.setup, axis);
+  const std::vector<double> travelled = travel_since_turning(view.campaign.machine, view.setup, axis);
   for (Eigen::Index i = 0; i < half.size(); ++i)
     half[i] *= std::exp(-travelled[static_cast<std::size_t>(i)] / length);
   return half;

@@ -171,6 +171,16 @@ std::string tables_leave_more(const Finding& finding) {
                     : finer + ", a format that holds more positions, or fewer types");
 }
 
+std::string rotary_may_worsen(const Finding& finding) {
+  return fmt::format(
+      "what the tables correct of rotary axes is known too badly: {:.2f} um RMS are to be expected with "
+      "them, "
+      "{:.2f} were identified without: away from the poses that were measured they can make the machine "
+      "worse; "
+      "measure what the fit names as not visible before they are loaded, or leave out the types R-",
+      finding.number("expected").in_unit(), finding.number("before").in_unit());
+}
+
 std::string compensations_differ(const Finding& finding) {
   if (!finding.has("measured"))
     return fmt::format(
@@ -257,6 +267,7 @@ std::span<const SentenceMaker> error_sentences() {
       {FindingCode::RotaryTablesOffIdeal, rotary_tables_off_ideal},
       {FindingCode::RotaryTablesWithoutDirections, rotary_tables_without_directions},
       {FindingCode::TablesLeaveMore, tables_leave_more},
+      {FindingCode::RotaryTablesMayWorsen, rotary_may_worsen},
       {FindingCode::CompensationsDiffer, compensations_differ},
       {FindingCode::CompensationsUnstated, compensations_unstated},
       {FindingCode::CompensationsInTables, compensations_in_tables},

@@ -1,6 +1,7 @@
 #pragma once
 /// What tables leave of all identified errors together, over poses of all axes.
 
+#include <cmath>
 #include <optional>
 
 #include "volcal/identify/compensation/checks/volume_check.h"
@@ -23,6 +24,11 @@ struct AllAxesCheck {
   /// What L-VOL made with the rotary axes at 0, without any table's step, leaves of the errors of linear axes
   /// alone: where a head is tilted, their angles act by another lever.
   PoseErrorLeft levers;
+  /// Standard uncertainty of all errors as identified, RMS over the poses (pose_uncertainty.h), m.
+  /// make_tables() states it.
+  double identification_u = 0.0;
+  /// RMS to be expected on the machine with the tables: what they leave and this uncertainty, m.
+  double expected_rms() const { return std::hypot(exported.rms, identification_u); }
 };
 
 /// By the exact model with the errors as identified, approached from either side as often, after the best

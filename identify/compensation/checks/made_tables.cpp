@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "volcal/identify/compensation/checks/pose_uncertainty.h"
 #include "volcal/identify/compensation/rotary_tables.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/text/text_file.h"
@@ -126,6 +127,27 @@ void report_more_than_none(MadeTables& made) {
     report(made.rotary_check->before.rms, made.rotary_check->exported.rms, finer_rotary_tables(made));
 }
 
+void add_uncertainty(const FitResult& result, MadeTables& made) {
+  if (!made.all_axes) return;
+  const PoseUncertainty u =
+      pose_uncertainty(result, made.options, approached_poses_of_all_axes(result.machine, kAllAxesPoses));
+  made.all_axes->identification_u = u.all;
+  if (!made.rotary_check) return;
+  made.rotary_check->identification_u = u.rotary;
+  made.rotary_check->corrected_u = u.corrected;
+}
+
+/// Corrections that are less certain than the errors are large.
+void report_uncertain_rotary(MadeTables& made) {
+  if (!made.rotary_check) return;
+  const RotaryCheck& check = *made.rotary_check;
+  const double expected = std::hypot(check.exported.rms, check.corrected_u);
+  if (expected <= check.before.rms + kNotableIncrease) return;
+  made.cautions.push_back(
+      {FindingCode::RotaryTablesMayWorsen,
+       {{"expected", in_micrometres(expected)}, {"before", in_micrometres(check.before.rms)}}});
+}
+
 /// 0 = the default.
 void check_tolerance(double tolerance) {
   if (!std::isfinite(tolerance) || tolerance < 0.0)
@@ -158,6 +180,7 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
   made.check = check_in_volume(result, made.options, made.read_back);
   made.rotary_check = check_rotary_axes(format, result, made.options, made.read_back);
   made.all_axes = check_all_axes(result, made.options, made.read_back);
+  add_uncertainty(result, made);
   made.effects_left_out = left_out_by(made.options.type, result);
   report_unknown_axes(result, made.cautions);
   report_levers(result.machine, made);
@@ -166,6 +189,7 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
   report_rotary_step(wanted, made);
   report_rotary_directions(made);
   report_more_than_none(made);
+  report_uncertain_rotary(made);
   return made;
 }
 

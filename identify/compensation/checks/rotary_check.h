@@ -2,6 +2,7 @@
 /// What a compensation leaves of the errors of rotary axes, over poses of all axes: the machine as it is,
 /// with the ideal compensation of the type, and with the tables as written and read back.
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -27,6 +28,11 @@ struct RotaryCheck {
   double deviation = 0.0;
   /// RMS of what the tables leave since they are the mean of the directions of approach, m.
   double without_directions = 0.0;
+  /// Standard uncertainty of the errors of rotary axes as identified, and of those that the type corrects,
+  /// RMS over the poses (pose_uncertainty.h), m. make_tables() states them.
+  double identification_u = 0.0, corrected_u = 0.0;
+  /// RMS to be expected on the machine with the tables: what they leave and this uncertainty, m.
+  double expected_rms() const { return std::hypot(exported.rms, identification_u); }
 };
 
 /// By the exact model with the identified errors of the rotary axes alone, approached from either side as

@@ -10,6 +10,7 @@
 namespace volcal {
 namespace {
 
+const std::string kExpectedOnMachine = "expected on the machine";
 constexpr double kShownResolution = 1e-10;  // m; finer ones limit nothing
 
 std::vector<std::string> left_figures(const std::string& name, const ErrorLeft& left) {
@@ -87,7 +88,7 @@ std::string volume_check_text(const VolumeCheck& check, const CompensationType& 
   volume.add_row(left_figures(of_linear_axes.empty() ? "ideal" : "ideal " + of_linear_axes, check.ideal));
   volume.add_row(left_figures("tables read back", check.exported));
   if (check.identification_u > 0.0)
-    volume.add_row({"expected on the machine", fixed_number(check.expected_rms() / kMicro, 2), ""});
+    volume.add_row({kExpectedOnMachine, fixed_number(check.expected_rms() / kMicro, 2), ""});
   if (check.over_conditions)
     volume.add_row(left_figures("tables, ends of the campaign's conditions", *check.over_conditions));
   if (check.over_parallel) {
@@ -135,6 +136,8 @@ std::string rotary_check_text(const RotaryCheck& check, const CompensationType& 
   add("before", check.before);
   add("ideal " + type.rotary().name(), check.ideal);
   add("tables read back", check.exported);
+  if (check.identification_u > 0.0)
+    table.add_row({kExpectedOnMachine, fixed_number(check.expected_rms() / kMicro, 2), "", ""});
   return table.text();
 }
 
@@ -164,13 +167,17 @@ std::string all_axes_text(const AllAxesCheck& check) {
           kAllAxesPoses));
   table.add_row(pose_figures("before", check.before));
   table.add_row(pose_figures("tables read back", check.exported));
+  if (check.identification_u > 0.0)
+    table.add_row({kExpectedOnMachine, fixed_number(check.expected_rms() / kMicro, 2), "", "", ""});
   return table.text();
 }
 
 nlohmann::ordered_json all_axes_json(const AllAxesCheck& check) {
   return {{"before", pose_json(check.before)},
           {"tables", pose_json(check.exported)},
-          {"levers_of_tilted_head", pose_json(check.levers)}};
+          {"levers_of_tilted_head", pose_json(check.levers)},
+          {"identification_u_um", check.identification_u / kMicro},
+          {"expected_rms_um", check.expected_rms() / kMicro}};
 }
 
 nlohmann::ordered_json rotary_check_json(const RotaryCheck& check) {
@@ -180,6 +187,8 @@ nlohmann::ordered_json rotary_check_json(const RotaryCheck& check) {
     json[name] = {{"rms_um", left->rms / kMicro},
                   {"max_um", left->max / kMicro},
                   {"tool_axis_urad", left->axis_rms / kMicro}};
+  json["identification_u_um"] = check.identification_u / kMicro;
+  json["expected_rms_um"] = check.expected_rms() / kMicro;
   return json;
 }
 

@@ -138,6 +138,39 @@ TEST(TablesOfAHead, LeaveADirectionThatIsRightWhereAnAxisLeans) {
   EXPECT_LT(made.all_axes->exported.axis_rms, 0.1e-6);
 }
 
+/// The line of a table C is known to u = 40 um in x and y: in the axes of the workpiece that goes round with
+/// C, so that sqrt(2) u is left, whatever motion of the workpiece is taken away. It was identified as 20 um.
+TEST(TablesOfATable, SayHowBadlyTheErrorsAreKnown) {
+  const Machine machine = testing::rotary_machine("w C' b X Y Z t");
+  ModelSpec model;
+  model.default_function.basis = "zero";
+  FunctionSpec turn;
+  turn.basis = "fourier";
+  turn.degree = 1;
+  turn.coefficients = {0.0, 0.0, 0.0};
+  model.functions[*ErrorSymbol::parse("ECC")] = turn;
+  model.locations[{Component::X, AxisName::C}] = 20e-6;
+  model.locations[{Component::Y, AxisName::C}] = 0.0;
+  FitResult result = stated_result(machine, model);
+  const MadeTables stated = tables_of(result, "neutral-csv", CompensationType::parse("L-VOL+R-VOL"));
+  EXPECT_EQ(stated.rotary_check->identification_u, 0.0);
+  EXPECT_FALSE(is_said(stated, FindingCode::RotaryTablesMayWorsen));
+  result.covariance.setZero(result.layout.size, result.layout.size);
+  for (const ParameterBlock& block : result.layout.blocks) {
+    if (block.location && is_rotary(block.location->axis) && !is_rotation(block.location->component))
+      result.covariance(block.offset, block.offset) = 40e-6 * 40e-6;
+  }
+  const MadeTables made = tables_of(result, "neutral-csv", CompensationType::parse("L-VOL+R-VOL"));
+  const double u = std::sqrt(2.0) * 40e-6;
+  EXPECT_NEAR(made.rotary_check->identification_u, u, 0.03 * u);
+  EXPECT_NEAR(made.rotary_check->expected_rms(), std::hypot(made.rotary_check->exported.rms, u), 0.03 * u);
+  EXPECT_NEAR(made.all_axes->expected_rms(), std::hypot(made.all_axes->exported.rms, u), 0.03 * u);
+  EXPECT_TRUE(is_said(made, FindingCode::RotaryTablesMayWorsen));
+  const MadeTables turning = tables_of(result, "neutral-csv", CompensationType::parse("L-VOL+R-POS"));
+  EXPECT_NEAR(turning.rotary_check->identification_u, u, 0.03 * u) << "of all their errors";
+  EXPECT_FALSE(is_said(turning, FindingCode::RotaryTablesMayWorsen)) << "R-POS leaves what is uncertain";
+}
+
 /// Tables that were active are in what was identified, and are taken away with it: the lever is that of the
 /// roll.
 TEST(TablesOfAHead, LeaveTheSameLeverInPlaceOfOthers) {

@@ -13,6 +13,9 @@ std::vector<WordedFinding> examples_of_errors() {
        "every line has its own zero: reversal and bidirectional figures are not seen"},
       {{FindingCode::StandardsLinesOwnZero, {{"targets_of_own", true}}},
        "every line has its own zero and targets of its own: no figure compares them"},
+      {{FindingCode::StandardsLinesOwnZero, {{"direction", "-"}}},
+       "every line has its own zero: reversal and bidirectional figures are not seen; the lines towards - do "
+       "not share their targets: no figure of that direction"},
       {{FindingCode::StandardsTargetsSpread, {{"spread", FindingNumber{2.345e-6, "um", 1e-6}}}},
        "recorded positions within 2.3 um were taken as one target"},
       {{FindingCode::StandardsApproachUnknown, {{"readings", std::int64_t{4}}}},
@@ -32,6 +35,9 @@ std::vector<WordedFinding> examples_of_errors() {
       {{FindingCode::NoTestNotTwoAxesMove,
         {{"setup", "bar"}, {"line", std::int64_t{3}}, {"more_lines", std::int64_t{2}}}},
        "bar: line 3 and 2 more: the number of axes that move is not two"},
+      {{FindingCode::NoTestSeveralAxesMove, {{"setup", "level"}}}, "level: more than one axis moves"},
+      {{FindingCode::NoTestAngleNotRead, {{"setup", "level"}, {"axis", "C"}}},
+       "level: C turns, but not about the axis or with the body that the readings show"},
       {{FindingCode::NoTestNoCircle, {{"setup", "bar"}}}, "bar: the commanded points do not lie on a circle"},
       {{FindingCode::NoTestNoStraightLine, {{"setup", "line_X"}}},
        "line_X: the commanded points do not lie on a straight line"},
@@ -157,6 +163,13 @@ std::vector<WordedFinding> examples_of_errors() {
         {{"with", FindingNumber{4.26e-6, "um", 1e-6}}, {"without", FindingNumber{3.53e-6, "um", 1e-6}}}},
        "the machine errs by 4.26 um RMS with these tables and by 3.53 without: do not load them; take fewer "
        "types, or another format"},
+      {{FindingCode::RotaryTablesMayWorsen,
+        {{"expected", FindingNumber{232.6e-6, "um", 1e-6}}, {"before", FindingNumber{119.3e-6, "um", 1e-6}}}},
+       "what the tables correct of rotary axes is known too badly: 232.60 um RMS are to be expected with "
+       "them, "
+       "119.30 were identified without: away from the poses that were measured they can make the machine "
+       "worse; "
+       "measure what the fit names as not visible before they are loaded, or leave out the types R-"},
       {{FindingCode::CompensationsDiffer, {{"measured", "L-VOL"}}},
        "these readings were taken with L-VOL active, which the errors do not know: the figures are of both "
        "together; validate --tables takes out what tables corrected"},

@@ -14,6 +14,10 @@ Json left_row(const std::string& name, const ErrorLeft& left) {
   return {{"name", name}, {"rms", rounded_micrometres(left.rms)}, {"max", rounded_micrometres(left.max)}};
 }
 
+Json expected_row(const std::string& name, double rms) {
+  return {{"name", name}, {"rms", rounded_micrometres(rms)}, {"max", nullptr}};
+}
+
 Json pose_left_row(const std::string& name, const PoseErrorLeft& left) {
   Json row = left_row(name, left);
   row["axis"] = rounded(left.axis_rms * kPerMicro, 4);
@@ -28,9 +32,7 @@ Json volume_left_rows(const MadeTables& tables) {
   rows.push_back(left_row("ideal " + tables.options.type.linear().name(), check.ideal));
   rows.push_back(left_row("tables as the controller reads them", check.exported));
   if (check.identification_u > 0.0)
-    rows.push_back({{"name", "expected on the machine"},
-                    {"rms", rounded_micrometres(check.expected_rms())},
-                    {"max", nullptr}});
+    rows.push_back(expected_row("expected on the machine", check.expected_rms()));
   if (check.over_conditions)
     rows.push_back(left_row("tables, ends of the campaign's conditions", *check.over_conditions));
   if (check.fixed)
@@ -39,6 +41,9 @@ Json volume_left_rows(const MadeTables& tables) {
   if (tables.all_axes) {
     rows.push_back(pose_left_row("before, poses of all axes", tables.all_axes->before));
     rows.push_back(pose_left_row("tables, poses of all axes", tables.all_axes->exported));
+    if (tables.all_axes->identification_u > 0.0)
+      rows.push_back(
+          expected_row("expected on the machine, poses of all axes", tables.all_axes->expected_rms()));
   }
   return rows;
 }
@@ -66,6 +71,8 @@ Json rotary_left_rows(const MadeTables& tables) {
   add("before", tables.rotary_check->before);
   add("ideal", tables.rotary_check->ideal);
   add("tables as the controller reads them", tables.rotary_check->exported);
+  if (tables.rotary_check->identification_u > 0.0)
+    rows.push_back(expected_row("expected on the machine", tables.rotary_check->expected_rms()));
   return rows;
 }
 

@@ -98,7 +98,7 @@ export function renderCertificateFigures(body, data) {
   }
   if (data.rotary.length > 0) {
     body.append(el('h3', {}, 'Rotary axes'), table([...leftColumns,
-      { name: 'Tool axis', unit: 'µrad RMS', cell: (row) => fixed(row.axis, 2) }], data.rotary));
+      axisColumns[0]], data.rotary));
   }
   body.append(
     el('h3', {}, 'Measured'),

@@ -200,7 +200,9 @@ std::optional<SessionWork> begin_command(Session& session, const SessionCommand&
       session.remove_preview(command.effect);
       return std::nullopt;
     case Verb::Formula:
-      session.formula(written_effect(kFormulaLine, command.formula, command.parameters).spec);
+      at_its_column(kFormulaLine, command.formula, [&] {
+        session.formula(written_effect(kFormulaLine, command.formula, command.parameters).spec);
+      });
       return std::nullopt;
     case Verb::Refit:
       if (command.number) require_model(session, *command.number);

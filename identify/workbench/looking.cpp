@@ -8,6 +8,8 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
+#include <utility>
 
 #include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/criticism/data/effect_words.h"
@@ -166,10 +168,21 @@ std::vector<std::pair<std::string, std::string>> target_words(const Session& ses
   return words;
 }
 
+/// Row and channel, by setup.
+std::vector<std::set<std::pair<std::size_t, int>>> left_out_readings(const Campaign& campaign) {
+  std::vector<std::set<std::pair<std::size_t, int>>> left_out(campaign.setups.size());
+  for (std::size_t setup = 0; setup < campaign.setups.size(); ++setup) {
+    for (const LeftOutReading& reading : campaign.setups[setup].left_out)
+      left_out[setup].emplace(reading.row, static_cast<int>(reading.channel));
+  }
+  return left_out;
+}
+
 std::vector<ResidualRecord> records_of(const Session& session, std::size_t model) {
   const auto& places = session.linear().observations();
   const Eigen::VectorXd& residual = session.residual(model);
   const std::vector<double>& sigma = session.linear().problem().data.sigma;
+  const std::vector<std::set<std::pair<std::size_t, int>>> left_out = left_out_readings(session.campaign());
   std::vector<ResidualRecord> records;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto& [setup, row, channel] = places[i];
@@ -182,6 +195,7 @@ std::vector<ResidualRecord> records_of(const Session& session, std::size_t model
     record.reading = readings.value[static_cast<std::size_t>(channel)][row];
     record.predicted = record.reading - residual[static_cast<Eigen::Index>(i)];
     record.removed = !std::isfinite(sigma[i]);
+    record.left_out = left_out[setup].contains({row, channel});
   }
   return records;
 }
@@ -329,7 +343,8 @@ std::string preview_frame(Session& session, const std::string& effect) {
 std::string formula_frame(Session& session, const std::string& text,
                           const std::vector<std::string>& parameters) {
   const WrittenEffect written = written_effect(kFormulaBox, text, parameters);
-  const EffectPreview preview = session.formula(written.spec);
+  const EffectPreview preview =
+      at_its_column(kFormulaBox, text, [&] { return session.formula(written.spec); });
   Json json = preview_json(session, preview);
   json["tried"] = session.tried();
   json["rivals"] = all_cosines_json(session, preview, session.residual());

@@ -69,10 +69,21 @@ void Workbench::wait_until_idle() {
   woken_.wait(lock, [this] { return phase_ != Phase::Loading && !busy_ && !waiting_; });
 }
 
+void Workbench::require_loaded() const {
+  if (phase_ == Phase::Ready) return;
+  if (phase_ == Phase::Loading || !input_error_)
+    throw Refusal(409, "the campaign is still being loaded", "wait until it is there");
+  const SourcePlace& place = input_error_->place();
+  const std::string line = place.line > 0 ? ":" + std::to_string(place.line) : "";
+  throw Refusal(
+      409,
+      "the input is wrong: " + (place.file.empty() ? "" : place.file + line + ": ") + input_error_->problem(),
+      (input_error_->remedy().empty() ? "mend it" : input_error_->remedy()) +
+          "; once the file is saved, it is loaded by itself");
+}
+
 Session& Workbench::session() {
-  if (phase_ != Phase::Ready)
-    throw Refusal(409, phase_ == Phase::Loading ? "the campaign is still being loaded" : "the input is wrong",
-                  "wait until it is there");
+  require_loaded();
   return *session_;
 }
 
@@ -104,7 +115,7 @@ void Workbench::require_no_work() const {
 
 /// The session ends, and another one begins with the files as they are now.
 void Workbench::load_again() {
-  if (phase_ != Phase::Ready) throw Refusal(409, "the campaign is not loaded yet", "wait until it is there");
+  require_loaded();
   phase_ = Phase::Loading;
   load_again_ = true;
   cancel();

@@ -80,7 +80,8 @@ class Workbench {
   void export_now(const std::string& what);
   Json state(const std::string& tab) const;
   void publish_state();
-  Session& session();
+  void require_loaded() const;  ///< throws Refusal
+  Session& session();           ///< throws Refusal
 
   void work();
   void run(Job& job, Lock& lock);

@@ -27,7 +27,11 @@ TriedOf try_written(const std::shared_ptr<Campaign>& campaign, const std::string
   const ModelSpec spec = spec_for(model, campaign->machine);
   const WrittenEffect written = written_effect("effect", effect, parameters);
   const TryOptions options{threads, progress_to(progress)};
-  return without_lock([&] { return TriedOf{effect, try_effect(*campaign, spec, written, options)}; });
+  return without_lock([&] {
+    return at_its_column("effect", effect, [&] {
+      return TriedOf{effect, try_effect(*campaign, spec, written, options)};
+    });
+  });
 }
 
 py::list tried_values_of(const TriedOf& of) {

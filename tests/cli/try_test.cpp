@@ -147,9 +147,10 @@ TEST(TryProgram, RefusesWithTheColumn) {
       {"'EXX: x * p' --parameter p=1+-0", "not a number greater than 0", "p=250"},
       {"'EXX: x * p' --parameter p=nan", "its value is not a number", "p=250"},
       {"'EXX: x * p' --parameter p=1 --parameter p=2", "p is given twice", "leave one out"},
-      {"'EXX: T_oil * x'", "column T_oil_degC is missing, but the expression uses T_oil at character 1",
-       "channels"},
-      {"'EXA: x'", "the machine has no axis A", "name an axis of structure"},
+      {"'EXX: x * T_oil'", "column 10: ", "column T_oil_degC is missing, but the expression uses T_oil (add"},
+      {"'EXX: x * T_oil'", "column 10: ", "channels"},
+      {"'EXA: x'", "column 1: ", "the machine has no axis A"},
+      {"'EXX += log(x)'", "column 8: ", "is not finite at"},
   };
   for (const Refusal& refusal : refusals) {
     const auto run = run_program("try " + kTriedCampaign + "/campaign.toml " + refusal.arguments);

@@ -191,6 +191,14 @@ WrittenEffect written_effect(const std::string& option, const std::string& text,
   return effect;
 }
 
+void rethrow_at_its_column(const std::string& option, const std::string& text,
+                           const CustomEffectError& error) {
+  const auto [target, expression] = parted(option, text);
+  if (expression.text != error.expression()) throw CustomEffectError(error);
+  const std::size_t column = error.character() ? expression.at + *error.character() : target.at + 1;
+  refuse_effect(option, text, column, error.told(), error.remedy());
+}
+
 namespace {
 
 /// Whether an expression can be read and uses a name.

@@ -8,6 +8,7 @@
 
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/effect.h"
+#include "volcal/model/effects/kinds/open/custom.h"
 
 namespace volcal {
 
@@ -45,6 +46,19 @@ inline constexpr const char* kFormulaBox = "formula box";
 /// the text is wrong.
 WrittenEffect written_effect(const std::string& option, const std::string& text,
                              const std::vector<std::string>& parameters);
+/// What a campaign cannot have of a text that written_effect() took, as WrittenEffectError; an error of
+/// another effect as it is.
+[[noreturn]] void rethrow_at_its_column(const std::string& option, const std::string& text,
+                                        const CustomEffectError& error);
+/// What `work` gives that has to do with the text.
+template <class Work>
+auto at_its_column(const std::string& option, const std::string& text, const Work& work) {
+  try {
+    return work();
+  } catch (const CustomEffectError& error) {
+    rethrow_at_its_column(option, text, error);
+  }
+}
 /// Several of them. A parameter goes to those that use it; throws InputError where none does.
 std::vector<WrittenEffect> written_effects(const std::string& option, const std::vector<std::string>& texts,
                                            const std::vector<std::string>& parameters);

@@ -170,6 +170,14 @@ TEST_F(WorkbenchOnACampaign, AFormulaNamesItsErrorAndItsPlace) {
   const Json error = Json::parse(wrong.body);
   EXPECT_EQ(error["column"], 8);
   EXPECT_FALSE(error["remedy"].get<std::string>().empty());
+  const std::pair<const char*, int> refused[] = {
+      {"EXX += dir_x * (T_colum - 20)", 17}, {"EXX += log(x)", 8}, {"EXU += x", 1}};
+  for (const auto& [text, column] : refused) {
+    const Answer answer = page().ask("formula", {{"text", text}});
+    EXPECT_EQ(answer.status, 422) << text;
+    EXPECT_EQ(Json::parse(answer.body)["column"], column) << answer.body;
+    EXPECT_THAT(answer.body, ::testing::Not(::testing::HasSubstr("at character"))) << "counted elsewhere";
+  }
   const int tried = page().state()["tried"];
   const Framed right(page().ask("formula", {{"text", "EXX += dir_x"}}).body);
   EXPECT_EQ(right.json["tried"], tried + 1);
@@ -451,7 +459,13 @@ TEST(WorkbenchDoors, GoesOnWhenAFileIsMended) {
   EXPECT_EQ(wrong["input_error"]["file"], campaign.string());
   EXPECT_FALSE(wrong["input_error"]["remedy"].get<std::string>().empty());
   EXPECT_EQ(wrong["input_error"]["text"][1]["text"], "machin = \"machine.toml\"");
-  EXPECT_EQ(bench.answer("rank", "{}", "one").status, 409);
+  for (const char* request : {"rank", "undo", "reload"}) {
+    const Answer refused = bench.answer(request, "{}", "one");
+    EXPECT_EQ(refused.status, 409) << request;
+    EXPECT_THAT(refused.body, ::testing::AllOf(::testing::HasSubstr("campaign.toml:2: "),
+                                               ::testing::HasSubstr("once the file is saved"),
+                                               ::testing::Not(::testing::HasSubstr("wait until"))));
+  }
   std::ofstream(campaign) << right;
   std::string phase = "bad-input";
   for (int look = 0; look < 600 && phase != "ready"; ++look) {

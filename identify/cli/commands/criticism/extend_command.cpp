@@ -85,9 +85,12 @@ void add_named(const std::string& text, const ModelToExtend& extended, const Cam
 
 void add_custom(const ExtendArguments& arguments, const ModelToExtend& extended, Changes& changes) {
   const EffectSpec spec = written_effect("--custom", arguments.custom, arguments.parameters).spec;
-  const auto effect = extend_model(
-      extended, spec,
-      {.label = arguments.custom, .remedy_if_known = "leave out --custom", .remedy_if_absent = kOtherMotion});
+  const auto effect = at_its_column("--custom", arguments.custom, [&] {
+    return extend_model(extended, spec,
+                        {.label = arguments.custom,
+                         .remedy_if_known = "leave out --custom",
+                         .remedy_if_absent = kOtherMotion});
+  });
   changes.added.push_back(effect_label(*effect));
 }
 

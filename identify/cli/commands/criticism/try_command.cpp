@@ -31,9 +31,10 @@ int run_try(const TryArguments& arguments) {
   const ModelSpec model =
       arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
   ProgressBar bar("try");
-  const TriedEffect tried = try_effect(
-      campaign, model, effect,
-      {arguments.threads, [&bar](const std::string& stage, double done) { bar.update(stage, done); }});
+  const TryOptions options{arguments.threads,
+                           [&bar](const std::string& stage, double done) { bar.update(stage, done); }};
+  const TriedEffect tried =
+      at_its_column("EFFECT", arguments.effect, [&] { return try_effect(campaign, model, effect, options); });
   bar.finish();
   fmt::print("{}",
              arguments.json ? tried_json(arguments.effect, tried) : tried_text(arguments.effect, tried));

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/formula_effect.h"
@@ -52,13 +53,14 @@ class CustomFormula {
   const std::vector<std::string>& parameters() const { return parameters_; }
 
   void check(const Campaign& campaign) const {
-    target_.check(campaign, what(), place_);
+    at_its_place({}, [&] { target_.check(campaign, what(), place_); });
     for (const Variable& variable : variables_) {
       const std::string name = variable.written();
-      check_variable(
-          campaign, variable, [&](const Setup& setup) { return acts_on(campaign, setup); }, what(),
-          "the expression uses " + name + " at character " + std::to_string(expression_.character_of(name)),
-          place_);
+      at_its_place(expression_.character_of(name), [&] {
+        check_variable(
+            campaign, variable, [&](const Setup& setup) { return acts_on(campaign, setup); }, what(),
+            "the expression uses " + name, place_);
+      });
     }
   }
 
@@ -103,6 +105,15 @@ class CustomFormula {
     }
   }
 
+  template <class Check>
+  void at_its_place(std::optional<std::size_t> character, const Check& check) const {
+    try {
+      check();
+    } catch (const InputError& error) {
+      throw CustomEffectError(error, expression_.text(), character);
+    }
+  }
+
   void check_parameter(const EffectTable& table, const std::string& name) const {
     const bool used = expression_.uses(name), given = table.spec.options.number(name).has_value();
     if (used && !given)
@@ -140,10 +151,11 @@ class CustomFormula {
       at +=
           (k > 0 ? ", " : "") + names[k] + " = " + std::to_string(columns(row, static_cast<Eigen::Index>(k)));
     }
-    throw InputError(
+    const InputError error(
         place_,
         what() + " is not finite at " + place_of(view, static_cast<std::size_t>(row)) + " (" + at + ")",
         "write it so that it has a value at every reading and pose, as in sqrt(max(0, z))");
+    throw CustomEffectError(error, expression_.text(), std::size_t{1});
   }
 
   SourcePlace place_;
@@ -231,6 +243,21 @@ std::vector<EffectSpec> custom_examples(const Campaign& campaign) {
 }
 
 }  // namespace
+
+namespace {
+
+std::string with_character(const std::string& problem, std::optional<std::size_t> character) {
+  return character > std::size_t{1} ? fmt::format("{} at character {}", problem, *character) : problem;
+}
+
+}  // namespace
+
+CustomEffectError::CustomEffectError(const InputError& error, std::string expression,
+                                     std::optional<std::size_t> character)
+    : InputError(error.place(), with_character(error.problem(), character), error.remedy()),
+      expression_(std::move(expression)),
+      told_(error.problem()),
+      character_(character) {}
 
 Expression custom_expression(const std::string& formula) {
   return {formula,

@@ -86,8 +86,8 @@ class StatedLayout {
   void add_expansion(const Axis& axis, const ModelSpec& model) {
     const auto known = model.expansions.find(axis.name);
     if (!axis.expansion || known == model.expansions.end()) return;
-    add_block(ParameterKind::Expansion, expansion_parameter(axis.name),
-              known->second - axis.expansion->per_kelvin, "um/m/K", kMicro)
+    add(block_of_one(ParameterKind::Expansion, expansion_parameter(axis.name),
+                     known->second - axis.expansion->per_kelvin, "um/m/K", kMicro))
         .is_held = true;
   }
 

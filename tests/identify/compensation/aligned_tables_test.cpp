@@ -84,7 +84,7 @@ TEST_P(AlignedTables, LeaveOnTheMachineWhatIsPrinted) {
     const MadeTables made = make_tables(format, aligned_, options);
     const double printed = made.all_axes->exported.rms;
     EXPECT_NEAR(made.all_axes->before.rms, before, 0.1 * before) << name;
-    EXPECT_LT(printed, made.all_axes->levers.rms + 0.3e-6) << name;
+    EXPECT_LT(printed, made.all_axes->levers.rms + 0.5e-6) << name;
     const auto by_tables = [&](const AxisPosition& pose, const ApproachDirection& direction) {
       return made.read_back.correction(pose, direction);
     };

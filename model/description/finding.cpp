@@ -24,6 +24,7 @@ constexpr auto kFindingCodes = [] {
       {ReadingsMisread, "readings.misread", Severity::Warning},
       {ReadingsDuplicated, "readings.duplicated", Severity::Warning},
       {ReadingsDirectionsDerived, "readings.directions-derived", Severity::Note},
+      {ReadingsHalfTurns, "readings.half-turns", Severity::Note},
       {MachineCentreAssumed, "machine.centre-assumed", Severity::Note},
       {ReadingsLeftOut, "readings.left-out", Severity::Note},
       {ReadingsFlagged, "readings.flagged", Severity::Warning},
@@ -89,6 +90,8 @@ constexpr auto kFindingCodes = [] {
       {NoTestWithoutReadings, "standards.no-test.without-readings", Severity::Note},
       {NoTestRotaryAxisMoves, "standards.no-test.rotary-axis-moves", Severity::Note},
       {NoTestNoAxisMoves, "standards.no-test.no-axis-moves", Severity::Note},
+      {NoTestSeveralAxesMove, "standards.no-test.several-axes-move", Severity::Note},
+      {NoTestAngleNotRead, "standards.no-test.angle-not-read", Severity::Note},
       {NoTestNotTwoAxesMove, "standards.no-test.not-two-axes-move", Severity::Note},
       {NoTestNoCircle, "standards.no-test.no-circle", Severity::Note},
       {NoTestNoStraightLine, "standards.no-test.no-straight-line", Severity::Note},
@@ -113,15 +116,12 @@ constexpr auto kFindingCodes = [] {
       {RotaryTablesOffIdeal, "compensation.rotary-tables-off-ideal", Severity::Warning},
       {RotaryTablesWithoutDirections, "compensation.rotary-tables-without-directions", Severity::Warning},
       {TablesLeaveMore, "compensation.tables-leave-more", Severity::Failure},
+      {RotaryTablesMayWorsen, "compensation.rotary-may-worsen", Severity::Warning},
       {RotaryErrorsNotInModel, "errors.rotary-not-in-model", Severity::Warning},
       {RotaryHarmonicsHidden, "errors.rotary-harmonics-hidden", Severity::Note},
       {CompensationsDiffer, "compensation.active-differ", Severity::Warning},
       {CompensationsUnstated, "compensation.active-unstated", Severity::Warning},
       {CompensationsInTables, "compensation.active-in-tables", Severity::Warning},
-      {NoTestSeveralAxesMove, "standards.no-test.several-axes-move", Severity::Note},
-      {NoTestAngleNotRead, "standards.no-test.angle-not-read", Severity::Note},
-      {ReadingsHalfTurns, "readings.half-turns", Severity::Note},
-      {RotaryTablesMayWorsen, "compensation.rotary-may-worsen", Severity::Warning},
   });
 }();
 static_assert(kFindingCodes.size() == static_cast<std::size_t>(FindingCode::End), "every code has one name");

@@ -20,6 +20,7 @@ enum class FindingCode : std::uint8_t {
   ReadingsMisread,
   ReadingsDuplicated,
   ReadingsDirectionsDerived,
+  ReadingsHalfTurns,
   MachineCentreAssumed,
   ReadingsLeftOut,
   ReadingsFlagged,
@@ -85,6 +86,8 @@ enum class FindingCode : std::uint8_t {
   NoTestWithoutReadings,
   NoTestRotaryAxisMoves,
   NoTestNoAxisMoves,
+  NoTestSeveralAxesMove,
+  NoTestAngleNotRead,
   NoTestNotTwoAxesMove,
   NoTestNoCircle,
   NoTestNoStraightLine,
@@ -109,15 +112,12 @@ enum class FindingCode : std::uint8_t {
   RotaryTablesOffIdeal,
   RotaryTablesWithoutDirections,
   TablesLeaveMore,
+  RotaryTablesMayWorsen,
   RotaryErrorsNotInModel,
   RotaryHarmonicsHidden,
   CompensationsDiffer,
   CompensationsUnstated,
   CompensationsInTables,
-  NoTestSeveralAxesMove,
-  NoTestAngleNotRead,
-  ReadingsHalfTurns,
-  RotaryTablesMayWorsen,
   End,  ///< none: how many there are
 };
 

@@ -14,7 +14,8 @@
 namespace volcal::workbench {
 namespace {
 
-/// A circle without a deviation but for one reading, which is left out: it is in no figure of the picture.
+/// A circle there and back without a deviation but for one reading of 50 um, which is left out: it is in no
+/// figure of the picture.
 TEST(WorkbenchCircles, LeaveOutWhatIsLeftOut) {
   const testing::ScratchFolder folder;
   std::ofstream machine(folder.path() / "machine.toml"), readings(folder.path() / "bar.csv");
@@ -22,10 +23,10 @@ TEST(WorkbenchCircles, LeaveOutWhatIsLeftOut) {
   for (const char* axis : {"X", "Y", "Z"})
     machine << "[axes." << axis << "]\ntravel_mm = [-500, 500]\nhome_mm = 0.0\n";
   machine << "[tools.bar]\noffset_mm = [0, 0, 0]\n" << std::flush;
-  readings << "x_mm,y_mm,z_mm,length_mm\n";
-  for (int k = 0; k < 36; ++k) {
-    const double angle = 10.0 * k * std::numbers::pi / 180.0;
-    readings << 150.0 * std::cos(angle) << ',' << 150.0 * std::sin(angle) << ",0,"
+  readings << "x_mm,y_mm,z_mm,line,length_mm\n";
+  for (int k = 0; k < 72; ++k) {
+    const double angle = 10.0 * (k < 36 ? k : 71 - k) * std::numbers::pi / 180.0;
+    readings << 150.0 * std::cos(angle) << ',' << 150.0 * std::sin(angle) << ",0," << k / 36 << ','
              << (k == 7 ? 150.05 : 150.0) << '\n';
   }
   readings.close();
@@ -45,7 +46,7 @@ TEST(WorkbenchCircles, LeaveOutWhatIsLeftOut) {
   const Answer answer = bench.answer("polar", "{}", "one");
   ASSERT_EQ(answer.status, 200) << answer.body;
   const Json circle = Json::parse(answer.body)["circles"][0];
-  EXPECT_EQ(circle["rows"].size(), 35U);
+  EXPECT_EQ(circle["rows"].size(), 71U);
   EXPECT_LT(circle["G_measured_um"].get<double>(), 2.0);
 }
 

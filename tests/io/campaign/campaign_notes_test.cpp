@@ -53,6 +53,28 @@ class NotesTest : public ::testing::Test {
   testing::ScratchFolder scratch_;
 };
 
+/// A table that is recorded within a turn: over 0 and back, then half a turn from 300 to 120 and on.
+TEST(NotesOnATable, DirectionsFollowOverTheEndOfATurn) {
+  const testing::ScratchFolder scratch;
+  testing::spill(
+      scratch.path() / "machine.toml",
+      "format = \"volcal-machine-1\"\nstructure = \"w C' b Z t\"\n[axes.C]\ntravel_deg = [0, 360]\n"
+      "home_deg = 0.0\ncentre_mm = [0, 0, 0]\n[axes.Z]\ntravel_mm = [0, 500]\nhome_mm = 0.0\n"
+      "[tools.probe]\noffset_mm = [0, 0, 0]\n");
+  testing::spill(scratch.path() / "turn.csv",
+                 "c_deg,z_mm,angle_urad\n300,0,0\n0,0,1\n60,0,2\n0,0,1\n300,0,0\n120,0,1\n180,0,2\n");
+  testing::spill(scratch.path() / "campaign.toml",
+                 "format = \"volcal-campaign-1\"\nmachine = \"machine.toml\"\n[[setups]]\nname = \"R\"\n"
+                 "instrument = \"angle\"\ndata = \"turn.csv\"\naxis = [0, 0, 1]\n"
+                 "noise = { constant_urad = 1.0 }\n");
+  const Campaign campaign = read_campaign((scratch.path() / "campaign.toml").string());
+  EXPECT_THAT(campaign.setups[0].readings.direction[index_of(AxisName::C)],
+              ElementsAre(1, 1, 1, -1, -1, 0, 1));
+  EXPECT_THAT(
+      sentences(campaign.notes),
+      Contains(HasSubstr("half a turn of C goes either way: the direction of approach of 1 reading")));
+}
+
 TEST_F(NotesTest, DirectionsFollowFromTheOrder) {
   const Campaign campaign = read(kLine);
   EXPECT_THAT(campaign.setups[0].readings.direction[0], ElementsAre(1, 1, 1, -1, -1));

@@ -9,7 +9,6 @@
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/priors/resolution.h"
-#include "volcal/identify/solve/priors/smoothed_posterior.h"
 #include "volcal/identify/solve/rank_causes.h"
 #include "volcal/model/description/finding_codes.h"
 
@@ -26,28 +25,28 @@ const Basis& basis_of(const ParameterLayout& layout, ErrorSymbol symbol) {
   return *layout.groups[static_cast<std::size_t>(layout.find(symbol)->group)].basis;
 }
 
-constexpr double kSettledCoefficients = 3.0;  // of a function whose amplitude they tell
-constexpr double kRougherAtMost = 3.0;        // than its amplitude tells
+constexpr double kDetailThatTells = 3.5;  // coefficients of a function that tell its amplitude
+constexpr double kRougherAtMost = 3.0;    // than its amplitude tells
 
-/// Beyond the largest precision nothing is settled: the readings do not see the function.
-bool tells_amplitude(const SmoothingTerm& term, const Posterior& now) {
-  return term.is_function() && term.lambda < kMostLambda &&
-         settled_by_readings({&term, term.offset}, *term.prior, term.lambda, now) >= kSettledCoefficients;
+/// How many coefficients of a function beyond its straight part the readings determine; `determined`: share
+/// of each parameter's variance that is theirs.
+double detail_seen(const SmoothingTerm& term, const Eigen::VectorXd& determined) {
+  const Eigen::Index size = term.precision().rows();
+  return determined.segment(term.offset, size).sum() - static_cast<double>(size - term.prior->rank);
 }
 
-/// The wide prior, and functions of settled amplitude no rougher than that allows.
-GaussianPrior with_settled_roughness(const Eigen::MatrixXd& data, const std::vector<SmoothingTerm>& terms,
-                                     GaussianPrior wide) {
-  GaussianPrior smoothed = wide;
-  add_smoothing(terms, smoothed);
-  const auto factor = cholesky_lower(data + smoothed.precision);
+/// The wide prior, and functions whose roughness the readings tell no rougher than that allows.
+GaussianPrior with_roughness_seen(const Eigen::MatrixXd& data, const std::vector<SmoothingTerm>& terms,
+                                  GaussianPrior wide) {
+  const auto factor = cholesky_lower(data + wide.precision);
   if (!factor) return wide;
-  const Posterior now{inverse_from_cholesky(*factor), {}, 0.0};
-  std::vector<SmoothingTerm> settled;
-  std::ranges::copy_if(terms, std::back_inserter(settled),
-                       [&](const SmoothingTerm& term) { return tells_amplitude(term, now); });
-  for (SmoothingTerm& term : settled) term.lambda /= kRougherAtMost * kRougherAtMost;
-  add_smoothing(settled, wide);
+  const Eigen::VectorXd determined = inverse_from_cholesky(*factor).cwiseProduct(data).rowwise().sum();
+  std::vector<SmoothingTerm> seen;
+  std::ranges::copy_if(terms, std::back_inserter(seen), [&](const SmoothingTerm& term) {
+    return term.is_function() && detail_seen(term, determined) >= kDetailThatTells;
+  });
+  for (SmoothingTerm& term : seen) term.lambda /= kRougherAtMost * kRougherAtMost;
+  add_smoothing(seen, wide);
   return wide;
 }
 
@@ -312,7 +311,7 @@ RankAnalysis analyse_rank(const MeasurementModel& model, const DatumSpace& datum
 RankAnalysis judge_by_roughness(const MeasurementModel& model, const DatumSpace& datum,
                                 const Eigen::MatrixXd& data, const GaussianPrior& wide,
                                 const std::vector<SmoothingTerm>& terms, const RankAnalysis& rank) {
-  const GaussianPrior prior = with_settled_roughness(data, terms, wide);
+  const GaussianPrior prior = with_roughness_seen(data, terms, wide);
   RankAnalysis judged = RankAnalyser(model, datum, data, prior, wide).run();
   judged.report.rank = rank.report.rank;
   judged.on_invisible = rank.on_invisible;

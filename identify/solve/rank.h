@@ -10,7 +10,7 @@
 ///
 /// Surfaces (surface_prior.h) count as known here: what they could hide of an error belongs to the error.
 ///
-/// This holds functions rough between the positions of the readings by 0.1 mm or rad. Where readings settle
+/// This holds functions rough between the positions of the readings by 0.1 mm or rad. Where readings tell
 /// how rough a function is, what it may be between its positions is three times as rough at most, and an
 /// error that the first analysis takes for invisible is judged by this (judge_by_roughness): a squareness
 /// from a grid of positions is what the grid says, for all that a straightness might do between its lines.
@@ -59,7 +59,8 @@ RankAnalysis analyse_rank(const MeasurementModel& model, const DatumSpace& datum
                           const GaussianPrior& wide);
 
 /// The analysis where errors are not visible with functions as rough as `terms` say, of which the readings
-/// settle three coefficients or more. What the adjustment holds stays that of `rank`.
+/// determine four coefficients or more beyond its straight part. What the adjustment holds stays that of
+/// `rank`.
 RankAnalysis judge_by_roughness(const MeasurementModel& model, const DatumSpace& datum,
                                 const Eigen::MatrixXd& data, const GaussianPrior& wide,
                                 const std::vector<SmoothingTerm>& terms, const RankAnalysis& rank);

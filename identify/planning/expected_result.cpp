@@ -73,9 +73,8 @@ class Expectation {
     const Eigen::MatrixXd data = information_ + base_prior_.precision;
     const GaussianPrior wide = above_rounding(data, wide_prior(model_, datum_, z_, sigma_));
     rank_ = analyse_rank(model_, datum_, data, wide);
-    terms_ = assumed_smoothing(model_, datum_, roughness);
-    if (rank_.deficient) rank_ = judge_by_roughness(model_, datum_, data, wide, terms_, rank_);
     hold_undetermined(rank_, wide, base_prior_);
+    terms_ = assumed_smoothing(model_, datum_, roughness);
     hold_invisible(rank_, terms_, base_prior_);
     leave_imitated_to_the_rest(information_, base_prior_, terms_);
     base_prior_.mean = z_;

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <stdexcept>
 
@@ -35,31 +34,76 @@ double detail_seen(const SmoothingTerm& term, const Eigen::VectorXd& determined)
   return determined.segment(term.offset, size).sum() - static_cast<double>(size - term.prior->rank);
 }
 
-/// The wide prior, and functions whose roughness the readings tell no rougher than that allows.
-GaussianPrior with_roughness_seen(const Eigen::MatrixXd& data, const std::vector<SmoothingTerm>& terms,
+/// Values of a function at these positions, one row each, in its reduced coordinates.
+Eigen::MatrixXd rows_at(const MeasurementModel& model, const DatumSpace::FunctionCoordinates& function,
+                        const std::vector<double>& positions) {
+  const Basis& basis = basis_of(model.layout(), function.symbol);
+  Eigen::MatrixXd rows(positions.size(), basis.size());
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    rows.row(static_cast<Eigen::Index>(i)) = basis.row(positions[i]).transpose();
+  return rows * function.basis;
+}
+
+/// The same over the measured positions.
+Eigen::MatrixXd value_rows(const MeasurementModel& model, const DatumSpace::FunctionCoordinates& function) {
+  const MeasuredRange range = measured_range(model.campaign(), function.symbol.axis);
+  std::vector<double> positions(kPositions);
+  for (int i = 0; i < kPositions; ++i) {
+    const double share = static_cast<double>(i) / (kPositions - 1);
+    positions[static_cast<std::size_t>(i)] = range.min + share * (range.max - range.min);
+  }
+  return rows_at(model, function, positions);
+}
+
+/// The rows without what a straight line at these positions is.
+Eigen::MatrixXd without_lines(const std::vector<double>& positions, const Eigen::MatrixXd& rows) {
+  const auto count = static_cast<Eigen::Index>(positions.size());
+  Eigen::MatrixXd lines(count, 2);
+  lines.col(0).setOnes();
+  lines.col(1) = Eigen::Map<const Eigen::VectorXd>(positions.data(), count);
+  lines.col(1).array() -= lines.col(1).mean();
+  Eigen::MatrixXd left = rows;
+  for (const auto line : lines.colwise()) {
+    if (line.squaredNorm() > 0.0) left -= line * (line.transpose() * left) / line.squaredNorm();
+  }
+  return left;
+}
+
+/// Precision of what a function does between the positions of the readings, given what deviates from a
+/// straight line at them, by its smoothing S: with N the functions that are straight there, S N (N^T S N)^+
+/// N^T S.
+Eigen::MatrixXd precision_between(const Eigen::MatrixXd& deviations, const Eigen::MatrixXd& smoothing) {
+  constexpr double kStraight = 1e-9;  // of the largest: a line, which is not smoothed
+  const Eigen::MatrixXd between = null_space(deviations);
+  if (between.cols() == 0) return Eigen::MatrixXd::Zero(smoothing.rows(), smoothing.cols());
+  const Eigen::MatrixXd pull = smoothing * between;
+  const SymmetricEigen rough = eigen_decomposition(between.transpose() * pull);
+  const double least = kStraight * rough.values.cwiseAbs().maxCoeff();
+  const Eigen::VectorXd inverse =
+      (rough.values.array() > least).select(rough.values.array().max(least).inverse(), 0.0);
+  const Eigen::MatrixXd axes = pull * rough.vectors;
+  return axes * inverse.asDiagonal() * axes.transpose();
+}
+
+/// The wide prior, and functions whose roughness the readings tell no rougher between their positions than
+/// that allows. What readings at these positions leave open, as errors that can be exchanged, stays so.
+GaussianPrior with_roughness_seen(const MeasurementModel& model, const DatumSpace& datum,
+                                  const Eigen::MatrixXd& data, const std::vector<SmoothingTerm>& terms,
                                   GaussianPrior wide) {
   const auto factor = cholesky_lower(data + wide.precision);
   if (!factor) return wide;
   const Eigen::VectorXd determined = inverse_from_cholesky(*factor).cwiseProduct(data).rowwise().sum();
-  std::vector<SmoothingTerm> seen;
-  std::ranges::copy_if(terms, std::back_inserter(seen), [&](const SmoothingTerm& term) {
-    return term.is_function() && detail_seen(term, determined) >= kDetailThatTells;
-  });
-  for (SmoothingTerm& term : seen) term.lambda /= kRougherAtMost * kRougherAtMost;
-  add_smoothing(seen, wide);
-  return wide;
-}
-
-/// Values of a function over the measured positions, one row each, in its reduced coordinates.
-Eigen::MatrixXd value_rows(const MeasurementModel& model, const DatumSpace::FunctionCoordinates& function) {
-  const MeasuredRange range = measured_range(model.campaign(), function.symbol.axis);
-  const Basis& basis = basis_of(model.layout(), function.symbol);
-  Eigen::MatrixXd rows(kPositions, basis.size());
-  for (int i = 0; i < kPositions; ++i) {
-    const double share = static_cast<double>(i) / (kPositions - 1);
-    rows.row(i) = basis.row(range.min + share * (range.max - range.min)).transpose();
+  for (const SmoothingTerm& term : terms) {
+    if (!term.is_function() || detail_seen(term, determined) < kDetailThatTells) continue;
+    const auto function =
+        std::ranges::find(datum.functions(), term.symbol, &DatumSpace::FunctionCoordinates::symbol);
+    const std::vector<double> positions = different_positions(model.campaign(), term.symbol.axis);
+    const Eigen::MatrixXd deviations = without_lines(positions, rows_at(model, *function, positions));
+    const Eigen::Index size = term.precision().rows();
+    wide.precision.block(term.offset, term.offset, size, size) +=
+        term.lambda / (kRougherAtMost * kRougherAtMost) * precision_between(deviations, term.precision());
   }
-  return rows * function.basis;
+  return wide;
 }
 
 /// An error as a stretch of the reduced vector.
@@ -311,7 +355,7 @@ RankAnalysis analyse_rank(const MeasurementModel& model, const DatumSpace& datum
 RankAnalysis judge_by_roughness(const MeasurementModel& model, const DatumSpace& datum,
                                 const Eigen::MatrixXd& data, const GaussianPrior& wide,
                                 const std::vector<SmoothingTerm>& terms, const RankAnalysis& rank) {
-  const GaussianPrior prior = with_roughness_seen(data, terms, wide);
+  const GaussianPrior prior = with_roughness_seen(model, datum, data, terms, wide);
   RankAnalysis judged = RankAnalyser(model, datum, data, prior, wide).run();
   judged.report.rank = rank.report.rank;
   judged.on_invisible = rank.on_invisible;

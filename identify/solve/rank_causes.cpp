@@ -55,16 +55,6 @@ std::size_t tools_in_use(const Campaign& campaign) {
   return tools.size();
 }
 
-/// Positions of an axis that differ, ascending.
-std::vector<double> different_positions(const Campaign& campaign, AxisName axis) {
-  const double same = kLeastApart * campaign.machine.axis(axis).travel();
-  std::vector<double> different;
-  for (const double position : used_positions(campaign, axis)) {
-    if (different.empty() || position - different.back() > same) different.push_back(position);
-  }
-  return different;
-}
-
 /// For a function of so many unknowns: no more than these, or none over a stretch of two of its pieces.
 bool are_too_few(const std::vector<double>& positions, int unknowns) {
   if (static_cast<int>(positions.size()) <= unknowns) return true;
@@ -183,6 +173,15 @@ std::vector<std::string> rotary_remedies(const MeasurementModel& model, AxisName
 }
 
 }  // namespace
+
+std::vector<double> different_positions(const Campaign& campaign, AxisName axis) {
+  const double same = kLeastApart * campaign.machine.axis(axis).travel();
+  std::vector<double> different;
+  for (const double position : used_positions(campaign, axis)) {
+    if (different.empty() || position - different.back() > same) different.push_back(position);
+  }
+  return different;
+}
 
 std::optional<ErrorSymbol> straightness_beside(const MachineError& error) {
   const auto axis = turned_axis(error);

@@ -24,6 +24,10 @@ Finding cause_like_straightness(const MachineError& squareness, ErrorSymbol stra
 Finding cause_exchangeable(const MeasurementModel& model, const MachineError& error,
                            const std::vector<MachineError>& partners);
 
+/// Positions of an axis at which readings stand and that differ by more than a thousandth of its travel,
+/// ascending, m or rad.
+std::vector<double> different_positions(const Campaign& campaign, AxisName axis);
+
 /// The straightness that displaces as a squareness does: this one in proportion to the position, the
 /// straightness in any other course. Absent for other errors.
 std::optional<ErrorSymbol> straightness_beside(const MachineError& error);

@@ -16,7 +16,8 @@ ErrorRange error_range(const FitResult& result, const std::vector<ErrorTableRow>
     range.expanded = std::fmax(range.expanded, result.coverage_factor * row.u);
   }
   // a table is held by the stated roughness where the readings say nothing
-  if (!error.visible) range.expanded = std::fmax(range.expanded, result.coverage_factor * error.u_rms);
+  const double expanded = result.coverage_factor * error.u_rms;
+  if (!error.visible && range.expanded < expanded) range.expanded = expanded;
   return range;
 }
 

@@ -59,9 +59,9 @@ struct RankAnalysis {
 RankAnalysis analyse_rank(const MeasurementModel& model, const DatumSpace& datum, const Eigen::MatrixXd& data,
                           const GaussianPrior& wide);
 
-/// The analysis where errors are not visible with functions as rough as `terms` say, of which the readings
-/// determine four coefficients or more beyond its straight part. What the adjustment holds stays that of
-/// `rank`.
+/// The analysis, for where it finds errors not visible, with functions no rougher between the positions of
+/// the readings than `terms` allow, of which these determine four coefficients or more beyond the straight
+/// part. What the adjustment holds stays that of `rank`.
 RankAnalysis judge_by_roughness(const MeasurementModel& model, const DatumSpace& datum,
                                 const Eigen::MatrixXd& data, const GaussianPrior& wide,
                                 const std::vector<SmoothingTerm>& terms, const RankAnalysis& rank);

@@ -195,11 +195,7 @@ void NcRewriter::write_header(std::string_view line) {
                                 "compensate the original program");
   if (header_written_ || options_.header.empty()) return;
   header_written_ = true;
-  const bool percent = !written_.empty() && written_.front().text.starts_with('%');
-  const std::string end = line.ends_with("\r\n") ? "\r\n" : "\n";
-  std::vector<NcWrittenLine> header;
-  for (const std::string& comment : options_.header) header.push_back({comment + end, 0.0});
-  written_.insert(percent ? written_.begin() + 1 : written_.begin(), header.begin(), header.end());
+  put_header(options_.header, line, written_);
 }
 
 void NcRewriter::rewrite(std::string_view line, const Sink& sink) {

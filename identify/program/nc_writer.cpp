@@ -93,6 +93,15 @@ void require_readable(std::string_view written, std::string_view original, const
       "write its comment on a line of its own");
 }
 
+void put_header(const std::vector<std::string>& header, std::string_view original,
+                std::vector<NcWrittenLine>& written) {
+  const bool percent = !written.empty() && written.front().text.starts_with('%');
+  const std::string end = original.ends_with("\r\n") ? "\r\n" : "\n";
+  std::vector<NcWrittenLine> lines;
+  for (const std::string& comment : header) lines.push_back({comment + end, 0.0});
+  written.insert(written.begin() + (percent ? 1 : 0), lines.begin(), lines.end());
+}
+
 NcWriter::NcWriter(const NcSetup& setup, int decimals_mm)
     : state_(initial_state(setup)), decimals_mm_(decimals_mm) {}
 

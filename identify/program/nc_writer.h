@@ -28,6 +28,11 @@ struct NcWrittenLine {
 /// Throws InputError.
 void require_readable(std::string_view written, std::string_view original, const NcPlace& place);
 
+/// Puts a program's header, lines of comments, above what its line `original` became: below the first % where
+/// it is that.
+void put_header(const std::vector<std::string>& header, std::string_view original,
+                std::vector<NcWrittenLine>& written);
+
 /// Keeps what the control that runs the written program holds: its positions, and with them its offsets.
 class NcWriter {
  public:

@@ -11,10 +11,10 @@
 /// Surfaces (surface_prior.h) count as known here: what they could hide of an error belongs to the error.
 ///
 /// This holds functions rough between the positions of the readings by 0.1 mm or rad. Where readings tell
-/// how rough a function is, what it may do between its positions, given its values there, is three times as
-/// rough at most, and an error that the first analysis takes for invisible is judged by this
-/// (judge_by_roughness): a squareness from a grid of positions is what the grid says, for all that a
-/// straightness might do between its lines.
+/// how rough a function is, what it may do between its positions, given how it deviates from a straight line
+/// at them, is three times as rough at most, and an error that the first analysis takes for invisible is
+/// judged by this (judge_by_roughness): a squareness from a grid of positions is what the grid says, for all
+/// that a straightness might do between its lines.
 ///
 /// Where an error is not visible the prior stands on the invisible directions alone and pulls nothing that
 /// the readings determine. Where all are, it also stands, for the detail that smoothing holds, on directions

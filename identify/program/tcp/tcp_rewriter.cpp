@@ -258,11 +258,7 @@ void TcpRewriter::write_header(std::string_view line) {
     place().refuse("the program has been compensated already", "compensate the original program");
   if (header_written_ || options_.header.empty()) return;
   header_written_ = true;
-  const bool percent = !written_.empty() && written_.front().text.starts_with('%');
-  const std::string end = line.ends_with("\r\n") ? "\r\n" : "\n";
-  std::vector<NcWrittenLine> header;
-  for (const std::string& comment : options_.header) header.push_back({comment + end, 0.0});
-  written_.insert(written_.begin() + (percent ? 1 : 0), header.begin(), header.end());
+  put_header(options_.header, line, written_);
 }
 
 void TcpRewriter::rewrite(std::string_view line, const Sink& sink) {

@@ -82,6 +82,14 @@ FitResult refitted(const FittedStudy& study, const EffectSpec& effect) {
   return fit(study.simulated.campaign, model, options);
 }
 
+/// `own` added, with `rival` as its alternative.
+ModelState with_rival(const ModelState& given, const FamilyTest& own, const FamilyTest& rival) {
+  const ModelState reached = given.with(own);
+  std::vector<AddedEffect> added = reached.added();
+  added.front().rivals = {rival};
+  return reached.with_comparisons(std::move(added));
+}
+
 /// A rival that acts at every pose, and one that fades with the travel since a turn, which a pose does not
 /// have.
 TEST(AlternativeSets, DifferAsRefitsWithEachDo) {
@@ -98,11 +106,7 @@ TEST(AlternativeSets, DifferAsRefitsWithEachDo) {
   const Eigen::Matrix3Xd chosen = predicted(refitted(study, spec(own)), tool, places);
   for (const char* kind : {"position-reversal", "pre-travel"}) {
     const FamilyTest rival = test_of(given, {kind, "EYY", "", ""});
-    ModelState reached = given.with(own);
-    std::vector<AddedEffect> added = reached.added();
-    added.front().rivals = {rival};
-    reached = reached.with_comparisons(std::move(added));
-    const std::vector<SetFinding> sets = alternative_sets(reached, study.result);
+    const std::vector<SetFinding> sets = alternative_sets(with_rival(given, own, rival), study.result);
     ASSERT_EQ(sets.size(), 1U);
     ASSERT_EQ(sets[0].members.size(), 2U);
     EXPECT_EQ(sets[0].chosen, 0U) << "no member has fewer parameters";
@@ -132,11 +136,7 @@ TEST(AlternativeSets, CountUnderTheConditionsOfTables) {
   const ModelState given = ModelState(study.model, setting_of(study.model)).tested();
   const FamilyTest own = test_of(given, {"scale-expansion", "EXX", "T_column", ""});
   const FamilyTest rival = test_of(given, {"scale-expansion", "EXX", "T_air", ""});
-  ModelState reached = given.with(own);
-  std::vector<AddedEffect> added = reached.added();
-  added.front().rivals = {rival};
-  reached = reached.with_comparisons(std::move(added));
-  const std::vector<SetFinding> sets = alternative_sets(reached, study.result);
+  const std::vector<SetFinding> sets = alternative_sets(with_rival(given, own, rival), study.result);
   ASSERT_EQ(sets.size(), 1U);
   ASSERT_EQ(sets[0].members.size(), 2U);
   const MemberFinding& member = sets[0].members[1];

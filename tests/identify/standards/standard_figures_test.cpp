@@ -149,6 +149,14 @@ TEST(StandardFigures, PassesAtDifferentPlacesAreDifferentLines) {
   expect_x_line(figures.lines[1].figures.readings);
 }
 
+/// Of a line along X whose passes have zeros of their own.
+auto figures_with_own_zeros(const std::vector<Point>& points, Campaign& campaign) {
+  volcal::Setup& setup = add_setup(campaign, "line_X", "displacement", points);
+  setup.options.set("direction", Vector3d(1, 0, 0));
+  setup.options.set("offset_per", std::string("line"));
+  return standard_figures(campaign, records_of(campaign, [](auto, auto, double reading) { return reading; }));
+}
+
 /// Each pass shifted by its own zero: what compares passes is not defined, the rest is as before. + pass 1:
 /// 0, 5, 8 less their mean 13/3; + pass 2: 2, 5, 10 less 17/3. Means: -4, 0, 4 with halves of the sums
 /// (-13/3 - 11/3) / 2 = -4, (2/3 - 2/3) / 2 = 0, (11/3 + 13/3) / 2 = 4: E+ = 8.
@@ -156,11 +164,7 @@ TEST(StandardFigures, LinesWithTheirOwnZeroHaveNoReversal) {
   Campaign campaign = empty_campaign();
   auto points = x_line(0.5, 0.0, +1);
   for (Point& point : points) point.value += point.line * 1e-3;
-  volcal::Setup& setup = add_setup(campaign, "line_X", "displacement", points);
-  setup.options.set("direction", Vector3d(1, 0, 0));
-  setup.options.set("offset_per", std::string("line"));
-  const auto figures =
-      standard_figures(campaign, records_of(campaign, [](auto, auto, double reading) { return reading; }));
+  const auto figures = figures_with_own_zeros(points, campaign);
   ASSERT_EQ(figures.lines.size(), 1U);
   const PositioningFigures& line = figures.lines[0].figures.readings;
   EXPECT_FALSE(line.reversal || line.mean_reversal || line.systematic || line.repeatability || line.accuracy);
@@ -174,11 +178,7 @@ TEST(StandardFigures, LinesWithTheirOwnZeroLoseTheDirectionWhoseTargetsDiffer) {
   Campaign campaign = empty_campaign();
   auto points = x_line(0.5, 0.0, +1);
   points.pop_back();
-  volcal::Setup& setup = add_setup(campaign, "line_X", "displacement", points);
-  setup.options.set("direction", Vector3d(1, 0, 0));
-  setup.options.set("offset_per", std::string("line"));
-  const auto figures =
-      standard_figures(campaign, records_of(campaign, [](auto, auto, double reading) { return reading; }));
+  const auto figures = figures_with_own_zeros(points, campaign);
   ASSERT_EQ(figures.lines.size(), 1U);
   const PositioningFigures& line = figures.lines[0].figures.readings;
   EXPECT_TRUE(line.positive.systematic);

@@ -329,7 +329,7 @@ TEST_F(DiagnosisReport, IsOnePageWithoutMarkupInItsData) {
   EXPECT_THAT(page, HasSubstr("VMC \\u003c1>"));
 }
 
-/// Three outliers of the diagnosis by hand, which a fit takes back unless it is told not to.
+/// Three outliers of the diagnosis by hand, which a fit takes back unless an option says otherwise.
 TEST(DiagnosisText, SaysWhichReadingsAFitWouldTakeBack) {
   Diagnosis diagnosis = testing::hand_made_diagnosis();
   EXPECT_EQ(

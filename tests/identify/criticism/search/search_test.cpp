@@ -99,8 +99,8 @@ TEST(Search, KeepsEverySetOfNamesThatTheReadingsDoNotSeparate) {
   EXPECT_EQ(std::ranges::count(diagnosis.findings, FindingCode::DiagnosisChoice, &Finding::code), 2);
 }
 
-/// What the user wrote is one more twin: it is told as its set tells it, in the place of what the model
-/// reached holds, not beside that.
+/// What the user wrote is one more twin: it has the figures that its set gives it, in the place of what the
+/// model reached holds, not beside that.
 TEST(Search, AnOwnEffectThatIsARivalIsJudgedInThePlaceOfTheOther) {
   sim::HiddenEffect tilt = hidden_beside("thermal-tilt", "EAZ", 1.2e-6);
   tilt.options.set("channel", "column");
